@@ -1,0 +1,7 @@
+//! The host tool's parts: recordings, the calibration run as the board does it, and what comes out.
+//!
+//! The mathematics lives in `tumble-core`; here is what needs files, a terminal and a heap.
+#![forbid(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod recording;
