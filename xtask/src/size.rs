@@ -1,0 +1,82 @@
+//! Flash and RAM of an image, from its ELF program headers, against what the linker script gives.
+
+use std::path::Path;
+
+use object::elf::{FileHeader32, PT_LOAD};
+use object::read::elf::{FileHeader, ProgramHeader};
+use object::{LittleEndian, elf};
+
+use crate::args::Arguments;
+use crate::firmware::{self, Board};
+use crate::{Failure, toolchain};
+
+/// Bytes an image takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Size {
+    /// Code, constants and the initial values of variables.
+    pub flash: u64,
+    /// Variables; the stack has what is left.
+    pub ram: u64,
+}
+
+/// The STM32F411CE's memories (RM0383 §2.3), of which `memory.x` keeps the last two flash sectors for the parameters.
+const FLASH_ORIGIN: u64 = 0x0800_0000;
+const FLASH_IMAGE: u64 = 256 * 1024;
+const RAM_ORIGIN: u64 = 0x2000_0000;
+const RAM: u64 = 128 * 1024;
+
+/// `cargo xtask size`.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let toolchain = toolchain::set_up(arguments.toolchain)?;
+    for board in Board::ALL.into_iter().rev() {
+        let image = firmware::build(toolchain, board)?;
+        report(board, &image)?;
+    }
+    Ok(())
+}
+
+/// Prints one image's figures; fails if it does not fit.
+pub fn report(board: Board, image: &Path) -> Result<Size, Failure> {
+    let size = measure(image)?;
+    println!(
+        "{}: flash {} of {FLASH_IMAGE} bytes ({:.1} %), RAM {} of {RAM} bytes ({:.1} %), {} left for the stack",
+        board.feature(),
+        size.flash,
+        percent(size.flash, FLASH_IMAGE),
+        size.ram,
+        percent(size.ram, RAM),
+        RAM.saturating_sub(size.ram),
+    );
+    if size.flash > FLASH_IMAGE || size.ram > RAM {
+        return Err(format!("{} does not fit on the board", image.display()).into());
+    }
+    Ok(size)
+}
+
+fn percent(part: u64, whole: u64) -> f64 {
+    part as f64 / whole as f64 * 100.0
+}
+
+/// What is loaded to flash takes its size in the file; what lives in RAM takes its size in memory.
+fn measure(image: &Path) -> Result<Size, Failure> {
+    let unreadable = |error: String| Failure::from(format!("{} cannot be read: {error}", image.display()));
+    let data = std::fs::read(image).map_err(|error| unreadable(error.to_string()))?;
+    let header = FileHeader32::<LittleEndian>::parse(&*data).map_err(|error| unreadable(error.to_string()))?;
+    let endian = LittleEndian;
+    let segments = header.program_headers(endian, &*data).map_err(|error| unreadable(error.to_string()))?;
+    let mut size = Size::default();
+    for segment in segments.iter().filter(|segment| segment.p_type(endian) == PT_LOAD) {
+        add(&mut size, segment, endian);
+    }
+    Ok(size)
+}
+
+fn add(size: &mut Size, segment: &elf::ProgramHeader32<LittleEndian>, endian: LittleEndian) {
+    let (loaded, lives) = (u64::from(segment.p_paddr(endian)), u64::from(segment.p_vaddr(endian)));
+    if (FLASH_ORIGIN..RAM_ORIGIN).contains(&loaded) {
+        size.flash += u64::from(segment.p_filesz(endian));
+    }
+    if lives >= RAM_ORIGIN {
+        size.ram += u64::from(segment.p_memsz(endian));
+    }
+}
