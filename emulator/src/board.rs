@@ -117,7 +117,8 @@ impl Board {
 
     fn load(&mut self, elf: &[u8]) -> Result<(), BoardError> {
         let refused = |error: String| BoardError(error);
-        let image = Image::new(Path::new("firmware"), elf.to_vec(), None).map_err(|error| refused(error.to_string()))?;
+        let image =
+            Image::new(Path::new("firmware"), elf.to_vec(), None).map_err(|error| refused(error.to_string()))?;
         self.symbols =
             Symbols::read(elf, rigless::cpu::armv7m::code_address).map_err(|error| refused(error.to_string()))?;
         let mut flash = self.flash_cells();
@@ -127,11 +128,14 @@ impl Board {
             .filter_map(|(address, bytes)| Some((usize::try_from(address.checked_sub(FLASH_BASE)?).ok()?, bytes)))
             .collect();
         if let Some((start, bytes)) = spans.iter().find(|(start, bytes)| start + bytes.len() > FLASH_BYTES) {
-            return Err(refused(format!("the firmware has {} bytes at flash offset {start:#x}, past its end", bytes.len())));
+            return Err(refused(format!(
+                "the firmware has {} bytes at flash offset {start:#x}, past its end",
+                bytes.len()
+            )));
         }
-        for sector in 0..SECTOR_BYTES.len() {
+        for (sector, size) in SECTOR_BYTES.into_iter().enumerate() {
             let from = sector_start(sector).expect("a sector");
-            let to = from + SECTOR_BYTES[sector];
+            let to = from + size;
             if spans.iter().any(|(start, bytes)| *start < to && start + bytes.len() > from) {
                 cells[from..to].fill(0xFF);
             }

@@ -85,12 +85,7 @@ const GROUPS: [(usize, u64); 7] =
 impl Exti {
     #[must_use]
     pub fn new(routing: Routing, led: LedLog) -> Self {
-        Self {
-            routing,
-            led,
-            levels: [[Level::Low; LINES]; PORTS.len()],
-            driven: [Level::Low; GROUPS.len()],
-        }
+        Self { routing, led, levels: [[Level::Low; LINES]; PORTS.len()], driven: [Level::Low; GROUPS.len()] }
     }
 
     fn latch(&mut self, bits: u64, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {

@@ -193,13 +193,7 @@ impl Device for Flash {
         matches!(register, Register::Keyr | Register::Optkeyr).then_some(0)
     }
 
-    fn write(
-        &mut self,
-        register: Register,
-        value: u64,
-        registers: &mut RegisterFile,
-        context: &mut DeviceContext<'_>,
-    ) {
+    fn write(&mut self, register: Register, value: u64, registers: &mut RegisterFile, context: &mut DeviceContext<'_>) {
         match register {
             Register::Keyr => self.take_key(value),
             Register::Cr => self.write_control(value, context),

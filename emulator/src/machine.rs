@@ -53,4 +53,3 @@ impl Board for BlackPill {
         vec![Target::new(MCU, &mut self.part, spec)]
     }
 }
-

@@ -8,9 +8,7 @@ use std::num::{NonZeroU32, NonZeroU64};
 use rigless::cpu::armv7m;
 use rigless::soc::stm32f427::generated as table;
 use rigless::soc::stm32f427::peripherals::tim::Counter;
-use rigless::soc::{
-    Builder, Bus, Clock, Cpu, Endian, EraseBlocks, Error, Gate, Peripheral, Region, WriteModify,
-};
+use rigless::soc::{Builder, Bus, Clock, Cpu, Endian, EraseBlocks, Error, Gate, Peripheral, Region, WriteModify};
 
 pub const FLASH_BASE: u64 = 0x0800_0000;
 pub const FLASH_BYTES: usize = 512 << 10;
@@ -19,16 +17,8 @@ pub const RAM_BYTES: usize = 128 << 10;
 pub const SYSTEM_BASE: u64 = 0x1FFF_0000;
 
 /// The F411's sectors: 4 of 16 KB, one of 64 KB, 3 of 128 KB (RM0383 table 5).
-pub const SECTOR_BYTES: [usize; 8] = [
-    16 << 10,
-    16 << 10,
-    16 << 10,
-    16 << 10,
-    64 << 10,
-    128 << 10,
-    128 << 10,
-    128 << 10,
-];
+pub const SECTOR_BYTES: [usize; 8] =
+    [16 << 10, 16 << 10, 16 << 10, 16 << 10, 64 << 10, 128 << 10, 128 << 10, 128 << 10];
 
 static ERASE_BLOCKS: [EraseBlocks; 3] = [blocks(16 << 10, 4), blocks(64 << 10, 1), blocks(128 << 10, 3)];
 
@@ -55,20 +45,14 @@ static CPU: Cpu = Cpu::new("CM4", true, INTERRUPT_LINES, Endian::Little);
 pub const PORTS: [&str; 6] = ["GPIOA", "GPIOB", "GPIOC", "GPIOD", "GPIOE", "GPIOH"];
 pub const SPIS: [&str; 5] = ["SPI1", "SPI2", "SPI3", "SPI4", "SPI5"];
 pub const USARTS: [&str; 3] = ["USART1", "USART2", "USART6"];
-pub const TIMERS: [(&str, Counter); 4] = [
-    ("TIM2", Counter::Wide),
-    ("TIM3", Counter::Narrow),
-    ("TIM4", Counter::Narrow),
-    ("TIM5", Counter::Wide),
-];
+pub const TIMERS: [(&str, Counter); 4] =
+    [("TIM2", Counter::Wide), ("TIM3", Counter::Narrow), ("TIM4", Counter::Narrow), ("TIM5", Counter::Wide)];
 
 /// Instances that answer from their registers alone: present on the part, and not used by the product.
-const STORED_ONLY: [&str; 10] =
-    ["WWDG", "I2C1", "I2C2", "I2C3", "SDIO", "TIM9", "TIM10", "TIM11", "CRC", "RTC"];
+const STORED_ONLY: [&str; 10] = ["WWDG", "I2C1", "I2C2", "I2C3", "SDIO", "TIM9", "TIM10", "TIM11", "CRC", "RTC"];
 
 /// Every instance with a model behind it besides the ports, serial interfaces, serial ports and timers above.
-const MODELLED: [&str; 10] =
-    ["RCC", "PWR", "FLASH", "EXTI", "SYSCFG", "DMA1", "DMA2", "IWDG", "TIM1", "DBG"];
+const MODELLED: [&str; 10] = ["RCC", "PWR", "FLASH", "EXTI", "SYSCFG", "DMA1", "DMA2", "IWDG", "TIM1", "DBG"];
 
 /// Clock enables (RM0383 6.3.9 to 6.3.12): an instance whose bit is clear does not answer.
 const GATES: [(&str, &str, &str); 26] = [

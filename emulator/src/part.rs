@@ -6,6 +6,7 @@ use rigless::cpu::armv7m::{self, Dwt};
 use rigless::device::{DeviceContext, ErasedDevice, Level, RegisterFile, ResetCause};
 use rigless::mcu::{Mcu, Operate};
 use rigless::soc::stm32f427::generated::rcc::Register as RccRegister;
+use rigless::soc::stm32f427::peripherals::CONTROLLERS;
 use rigless::soc::stm32f427::peripherals::dbg::Dbg;
 use rigless::soc::stm32f427::peripherals::dma::Dma;
 use rigless::soc::stm32f427::peripherals::gpio::{Gpio, Pin};
@@ -14,9 +15,8 @@ use rigless::soc::stm32f427::peripherals::pwr::Pwr;
 use rigless::soc::stm32f427::peripherals::rcc::{HSI_HZ, Rcc};
 use rigless::soc::stm32f427::peripherals::rtc::Rtc;
 use rigless::soc::stm32f427::peripherals::spi::{Select, Spi};
-use rigless::soc::stm32f427::peripherals::tim::{Advanced, Counter, General, Tim};
+use rigless::soc::stm32f427::peripherals::tim::{Advanced, Counter, Tim};
 use rigless::soc::stm32f427::peripherals::usart::{Kind, Usart};
-use rigless::soc::stm32f427::peripherals::CONTROLLERS;
 use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
@@ -26,6 +26,7 @@ use crate::flash_array::FlashTiming;
 use crate::memory_map::{self, PORTS, SPIS, TIMERS, USARTS};
 use crate::sensor_wires::{NCS_PIN, PortB, SensorOnSpi, SharedSensor};
 use crate::serial_wire::SerialWire;
+use crate::timer::Timer;
 
 pub const HSE_HZ: u64 = 25_000_000;
 const SUPPLY_MV: u32 = 3300;
@@ -50,7 +51,7 @@ pub struct Part {
     port_b: PortB,
     spi: [Spi; SPIS.len()],
     usart: [Usart; USARTS.len()],
-    tim: [Tim<General>; TIMERS.len()],
+    tim: [Timer; TIMERS.len()],
     tim1: Tim<Advanced>,
     dma: [Dma; 2],
     flash: Flash,
@@ -144,7 +145,7 @@ impl Part {
             port_b: PortB::new(around.sensor.clone()),
             spi: std::array::from_fn(|_| Spi::with_clock(HSI_HZ)),
             usart: std::array::from_fn(|_| Usart::with_clock(Kind::Usart, HSI_HZ)),
-            tim: TIMERS.map(|(_, counter)| Tim::with_clock(HSI_HZ, counter)),
+            tim: TIMERS.map(|(_, counter)| Timer::with_clock(HSI_HZ, counter)),
             tim1: Tim::with_clock(HSI_HZ, Counter::Narrow),
             dma: std::array::from_fn(|nth| {
                 let controller = &CONTROLLERS[nth];
@@ -196,7 +197,11 @@ impl Part {
         Some(gpio.level(Pin::new(pin)?, registers) == Level::High)
     }
 
-    fn call_usart(&mut self, now: VirtualNanos, poll: impl FnOnce(&mut Usart, &mut RegisterFile, &mut DeviceContext<'_>)) {
+    fn call_usart(
+        &mut self,
+        now: VirtualNanos,
+        poll: impl FnOnce(&mut Usart, &mut RegisterFile, &mut DeviceContext<'_>),
+    ) {
         let slot = self.bus.slot_of("USART1").expect("on the bus");
         let (registers, mut context) = self.bus.drive(now, slot);
         poll(&mut self.usart[0], registers, &mut context);

@@ -122,8 +122,7 @@ impl Run {
         let (from_run, standings) = channel();
         let images = images(flash)?;
         let session = Session::new(Box::new(machine), 0, VirtualNanos(0)).map_err(|error| error.to_string())?;
-        let driver =
-            HostDriver { commands: to_run, standings: from_run.clone(), shared, flash: Arc::clone(flash) };
+        let driver = HostDriver { commands: to_run, standings: from_run.clone(), shared, flash: Arc::clone(flash) };
         let thread = std::thread::spawn(move || {
             if let Err(error) = emulator::run(session, &Start::new(&images), driver) {
                 let ended = Some(error.to_string());

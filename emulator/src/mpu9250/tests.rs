@@ -109,7 +109,7 @@ fn a_burst_never_mixes_two_samples() {
             PhysicalSample { angular_rate_rad_s: [self.0; 3], ..PhysicalSample::at_rest() }
         }
     }
-    let mut chip = Mpu9250::new(SensorOptions::default(), None, Box::new(Steps(0.0)));
+    let mut chip = Mpu9250::new(SensorOptions::default(), None, Box::new(Steps((-10.0_f64).to_radians())));
     configure(&mut chip);
     let first = chip.next_event_ns(READY_NS).expect("sampling");
     chip.on_event(first);
