@@ -45,6 +45,7 @@ pub use error::SimError;
 pub use face::Face;
 pub use motion::{Direction, Motion, Primitive};
 pub use nalgebra;
+pub use person::{Person, PersonConfig};
 pub use scheme::{Recording, Scheme, SchemeConfig};
 pub use sensor::{Sample, SensorConfig, SensorTruth, Truth};
 pub use world::{World, WorldConfig};

@@ -16,12 +16,12 @@ fn everything() -> (Motion, f64) {
     let moves = [
         Primitive::Rest { duration_s: 0.5 },
         Primitive::Reorient { up: Face::MinusY, heading_rad: 1.0, duration_s: 2.5 },
-        Primitive::full_turn(Direction::Cw, 8.0),
+        Primitive::full_turn(Direction::Cw, 5.0),
         Primitive::Pose { rotation_n_from_b: leaned, duration_s: 2.0 },
         Primitive::Hold { duration_s: 2.0 },
         Primitive::Reorient { up: Face::PlusX, heading_rad: 0.0, duration_s: 2.0 },
         Primitive::Turn { signed_angle_rad: FRAC_PI_2, duration_s: 2.5 },
-        Primitive::Tumble { duration_s: 8.0, violence: 1.5 },
+        Primitive::Tumble { duration_s: 5.0, violence: 1.5 },
         Primitive::Rest { duration_s: 1.5 },
     ];
     for primitive in moves {

@@ -4,6 +4,7 @@ mod imperfection;
 mod plan;
 
 pub use imperfection::Imperfection;
+pub(crate) use plan::{any_attitude, heading};
 
 use crate::error::SimError;
 use crate::face::Face;
