@@ -4,6 +4,10 @@ use heapless::Vec;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
+mod parameter;
+
+pub use parameter::Parameter;
+
 /// A three-axis sensor's deterministic errors: `ideal = correction · (raw − bias)`, SI, raw in `s`, ideal in `b`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Triad {

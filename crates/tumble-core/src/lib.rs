@@ -14,9 +14,16 @@
 #![warn(missing_docs)]
 
 pub mod calibration;
+pub mod command;
 pub mod face;
+pub mod frame;
+pub mod led;
+pub mod message;
 pub mod motion;
+pub mod procedure;
+pub mod record;
 pub mod sample;
+pub mod verify;
 
 /// Standard gravity in m/s², the unit "g" of recordings and of the sensor's sensitivity (CGPM 1901, exact).
 pub const STANDARD_GRAVITY_MPS2: f32 = 9.806_65;
