@@ -2,7 +2,6 @@
 
 use std::num::NonZeroU64;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use rigless::image::Image;
@@ -18,6 +17,7 @@ use crate::part::{Part, Surroundings};
 use crate::run::{Run, Shared};
 use crate::sensor_wires::SharedSensor;
 use crate::serial_wire::SerialWire;
+use crate::stall::SharedCore;
 use crate::world::SensorWorld;
 
 /// One particular board.
@@ -73,7 +73,7 @@ pub struct Board {
     pub(crate) shared: Shared,
     pub(crate) symbols: Symbols,
     options: BoardOptions,
-    around: Surroundings,
+    pub(crate) around: Surroundings,
     /// Board time and instructions before the present power-on.
     pub(crate) epoch_s: f64,
     epoch_instructions: u64,
@@ -89,7 +89,7 @@ impl Board {
             sensor: Arc::new(Mutex::new(sensor)),
             serial: SerialWire::default(),
             flash: Arc::new(Mutex::new(flash)),
-            stall: Arc::new(AtomicBool::new(false)),
+            core: SharedCore::default(),
             timing: options.flash_timing,
             led: LedLog::default(),
         };
@@ -154,7 +154,7 @@ impl Board {
         part.follow_sensor(VirtualNanos(0));
         let instructions_per_second = NonZeroU64::new(self.options.instructions_per_second)
             .ok_or_else(|| BoardError("instructions_per_second is zero".to_owned()))?;
-        let machine = BlackPill { part, instructions_per_second, stall: Arc::clone(&self.around.stall) };
+        let machine = BlackPill { part, instructions_per_second, core: Arc::clone(&self.around.core) };
         let run = Run::start(machine, &self.around.flash, self.shared.clone()).map_err(BoardError)?;
         self.run = Some(run);
         self.paint_stack();

@@ -3,7 +3,6 @@
 //! RM0383 section 3.5 to 3.8. The firmware runs from the one bank this part has, so the core's next fetch waits
 //! until an erase or program ends and no interrupt is taken before; [`crate::stall`] carries that out.
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
 use rigless::device::{Device, DeviceContext, Level, RegisterFile};
@@ -13,10 +12,9 @@ use rigless::time::{EventId, VirtualNanos};
 
 use crate::flash_array::{Changed, FlashArray, FlashTiming};
 use crate::memory_map::{FLASH_BASE, SECTOR_BYTES};
+use crate::stall::SharedCore;
 
 pub type SharedFlash = Arc<Mutex<FlashArray>>;
-/// Set while the core may not run.
-pub type Stall = Arc<AtomicBool>;
 
 const KEYS: [u64; 2] = [0x4567_0123, 0xCDEF_89AB];
 
@@ -43,7 +41,7 @@ const GLOBAL: usize = 0;
 #[derive(Debug)]
 pub struct Flash {
     array: SharedFlash,
-    stall: Stall,
+    core: SharedCore,
     timing: FlashTiming,
     /// How many of [`KEYS`] have come in order; a wrong one locks until reset.
     keys: usize,
@@ -56,10 +54,10 @@ pub struct Flash {
 
 impl Flash {
     #[must_use]
-    pub fn new(array: SharedFlash, stall: Stall, timing: FlashTiming) -> Self {
+    pub fn new(array: SharedFlash, core: SharedCore, timing: FlashTiming) -> Self {
         Self {
             array,
-            stall,
+            core,
             timing,
             keys: 0,
             locked_until_reset: false,
@@ -136,7 +134,7 @@ impl Flash {
     /// Busy, with the core standing still, for `nanos`.
     fn occupy(&mut self, nanos: u64, context: &mut DeviceContext<'_>) {
         self.sr |= SR_BSY;
-        self.stall.store(true, Ordering::Relaxed);
+        self.core.stall(true);
         let now = context.now();
         // A stop at this same instant takes the core back from the stretch of instructions it is in.
         context.schedule(now);
@@ -233,7 +231,7 @@ impl Device for Flash {
         if self.cr & CR_EOPIE != 0 {
             self.sr |= SR_EOP;
         }
-        self.stall.store(false, Ordering::Relaxed);
+        self.core.stall(false);
         self.publish(registers, context);
     }
 }

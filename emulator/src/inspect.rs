@@ -113,6 +113,12 @@ impl Board {
         Some((size - untouched, size))
     }
 
+    /// Where the core is: the next instruction's address, or `None` once it has locked up in a fault.
+    #[must_use]
+    pub fn pc(&self) -> Option<u64> {
+        (!self.around.core.locked_up()).then(|| self.around.core.pc())
+    }
+
     /// Every restart since power-on: board time, and `Core`, `Model("IWDG")` or `Pin`.
     #[must_use]
     pub fn resets(&self) -> Vec<(f64, String)> {

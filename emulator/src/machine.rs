@@ -9,7 +9,7 @@ use rigless::snapshot::Store;
 
 use crate::memory_map::INTERRUPT_LINES;
 use crate::part::Part;
-use crate::stall::stalling;
+use crate::stall::{SharedCore, stalling};
 
 const MCU: &str = "stm32f411";
 
@@ -17,7 +17,7 @@ const MCU: &str = "stm32f411";
 pub struct BlackPill {
     pub part: Part,
     pub instructions_per_second: NonZeroU64,
-    pub stall: crate::flash::Stall,
+    pub core: SharedCore,
 }
 
 /// Snapshots are not used here: a run always starts from power-on.
@@ -49,7 +49,7 @@ impl Board for BlackPill {
         };
         let windows = rigless::cpu::armv7m::windows(self.part.bus());
         let mut spec = core.spec_with_parts(&windows, Fpu::FpV4Sp, MpuRegions::Eight);
-        spec.processor = stalling(spec.processor, self.stall.clone());
+        spec.processor = stalling(spec.processor, self.core.clone());
         vec![Target::new(MCU, &mut self.part, spec)]
     }
 }

@@ -21,11 +21,12 @@ use rigless::soc::{Bus, Error};
 use rigless::time::VirtualNanos;
 
 use crate::exti::{Exti, LedChange, LedLog, Syscfg};
-use crate::flash::{Flash, SharedFlash, Stall};
+use crate::flash::{Flash, SharedFlash};
 use crate::flash_array::FlashTiming;
 use crate::memory_map::{self, PORTS, SPIS, TIMERS, USARTS};
 use crate::sensor_wires::{NCS_PIN, PortB, SensorOnSpi, SharedSensor};
 use crate::serial_wire::SerialWire;
+use crate::stall::SharedCore;
 use crate::timer::Timer;
 
 pub const HSE_HZ: u64 = 25_000_000;
@@ -37,7 +38,7 @@ pub struct Surroundings {
     pub sensor: SharedSensor,
     pub serial: SerialWire,
     pub flash: SharedFlash,
-    pub stall: Stall,
+    pub core: SharedCore,
     pub timing: FlashTiming,
     pub led: LedLog,
 }
@@ -151,7 +152,7 @@ impl Part {
                 let controller = &CONTROLLERS[nth];
                 Dma::new(controller.wiring, controller.last_data, controller.reaches_memory)
             }),
-            flash: Flash::new(around.flash.clone(), around.stall.clone(), around.timing),
+            flash: Flash::new(around.flash.clone(), around.core.clone(), around.timing),
             exti: Exti::new(syscfg.routing(), around.led.clone()),
             syscfg,
             iwdg: Iwdg::new(),
@@ -172,7 +173,7 @@ impl Part {
         let ncs = Select { port: "GPIOA", pin: Pin::new(NCS_PIN).expect("sixteen pins"), active: Level::Low };
         self.spi[0].attach_selected(SensorOnSpi(self.around.sensor.clone()), ncs);
         self.usart[0].attach(self.around.serial.clone());
-        self.around.stall.store(false, std::sync::atomic::Ordering::Relaxed);
+        self.around.core.stall(false);
     }
 
     /// Has port B follow the sensor from `at`: at power-on, after a reset, and after the host changed the chip.

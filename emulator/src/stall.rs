@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use rigless::emulator::{
     BitAlias, CoreBus, DataModel, Error, Exit, HaltReason, HostCall, Processor, ProcessorConstructor, Queued,
@@ -13,21 +13,48 @@ use rigless::emulator::{
 use rigless::soc::{Endian, Width};
 use rigless::time::VirtualNanos;
 
-use crate::flash::Stall;
+/// What the board and its models share with the core.
+#[derive(Debug, Default)]
+pub struct CoreState {
+    stalled: AtomicBool,
+    pc: AtomicU64,
+    locked_up: AtomicBool,
+}
 
-/// Wraps what `make` makes in a core that stands still while `stall` is set.
+pub type SharedCore = Arc<CoreState>;
+
+impl CoreState {
+    /// Has the core stand still, or run on.
+    pub fn stall(&self, stalled: bool) {
+        self.stalled.store(stalled, Ordering::Relaxed);
+    }
+
+    /// The next instruction's address, as of the last stretch of instructions.
+    #[must_use]
+    pub fn pc(&self) -> u64 {
+        self.pc.load(Ordering::Relaxed)
+    }
+
+    /// Whether a fault inside a fault handler stopped the core for good.
+    #[must_use]
+    pub fn locked_up(&self) -> bool {
+        self.locked_up.load(Ordering::Relaxed)
+    }
+}
+
+/// Wraps what `make` makes in a core that stands still while `state` says so.
 #[must_use]
-pub fn stalling(make: ProcessorConstructor, stall: Stall) -> ProcessorConstructor {
+pub fn stalling(make: ProcessorConstructor, state: SharedCore) -> ProcessorConstructor {
     Arc::new(move |endian| {
         let inner = make(endian)?;
-        Ok(Box::new(StallingCore { inner, stall: Arc::clone(&stall) }))
+        Ok(Box::new(StallingCore { inner, state: Arc::clone(&state) }))
     })
 }
 
 #[derive(Debug)]
 struct StallingCore {
     inner: Box<dyn Processor>,
-    stall: Stall,
+    state: SharedCore,
 }
 
 type ReadMemory<'a> = &'a mut dyn FnMut(u64, Width) -> Option<u64>;
@@ -35,10 +62,13 @@ type ReadMemory<'a> = &'a mut dyn FnMut(u64, Width) -> Option<u64>;
 #[expect(unsafe_code, reason = "`Processor::map` is unsafe to declare; the call is passed on unchanged")]
 impl Processor for StallingCore {
     fn run(&mut self, budget: u32, bus: &mut dyn CoreBus) -> (Exit, u64) {
-        if self.stall.load(Ordering::Relaxed) {
+        if self.state.stalled.load(Ordering::Relaxed) {
             return (Exit::Waiting, 0);
         }
-        self.inner.run(budget, bus)
+        let (exit, ran) = self.inner.run(budget, bus);
+        self.state.pc.store(self.inner.pc(), Ordering::Relaxed);
+        self.state.locked_up.store(exit == Exit::Lockup, Ordering::Relaxed);
+        (exit, ran)
     }
     unsafe fn map(&mut self, start: u64, length: u64, host: *mut u8, writable: bool) {
         // SAFETY: the caller's promise to this core is the one the inner core asks for.

@@ -199,3 +199,42 @@ fn the_stack_is_measured() {
     let (used, size) = board.stack_high_water().expect("cortex-m-rt's symbols");
     assert!((200..8192).contains(&used) && size > 65_536, "{used} of {size}");
 }
+
+#[test]
+fn it_stops_at_a_watched_function_and_memory_can_be_read_there() {
+    let mut board = board();
+    line(&mut board, 0.1);
+    let address = board.watch_function("bench_begin").expect("a function");
+    board.serial_write(b"c");
+    assert_eq!(board.run_to_arrival(board.now_s() + 1.0), Ok(Stopped::Hit));
+    assert_eq!(board.pc(), Some(address));
+    let vectors = board.read_memory(0x0800_0000, 8).expect("flash");
+    assert_eq!(vectors[..4], 0x2002_0000_u32.to_le_bytes(), "the initial stack pointer, at the end of RAM");
+    assert_eq!(board.read_memory(0x2002_0000, 4), None, "there is no RAM past 128 KB");
+    assert_eq!(board.run_for(0.1), Ok(Stopped::OnTime));
+}
+
+#[test]
+fn a_fault_can_come_and_go_and_a_new_world_can_begin() {
+    struct Hot;
+    impl SensorWorld for Hot {
+        fn sample(&mut self, _t_s: f64) -> PhysicalSample {
+            PhysicalSample { temperature_degc: 60.0, ..PhysicalSample::at_rest() }
+        }
+    }
+    let mut board = board();
+    line(&mut board, 0.1);
+    board.run_until(1.0).expect("it runs");
+    let samples = |board: &mut emulator::Board| value(&ask(board, b's', 0.1), "samples");
+    board.inject_fault(Some(SensorFault::DataReadyStuck));
+    board.run_for(0.1).expect("it runs");
+    let stuck = samples(&mut board);
+    board.run_for(0.5).expect("it runs");
+    assert_eq!(samples(&mut board), stuck);
+    board.inject_fault(None);
+    board.set_world(Box::new(Hot));
+    board.run_for(0.5).expect("it runs");
+    assert!(samples(&mut board) > stuck + 90);
+    // (60 - 21) · 333.87 = 13021.
+    assert!(ask(&mut board, b'l', 0.1).contains("32dd"));
+}
