@@ -1,14 +1,14 @@
 //! What each letter does.
 
-use crate::{imu, Line};
+use crate::{Line, imu};
 use core::fmt::Write as _;
 use core::sync::atomic::Ordering;
+use embassy_stm32::Peri;
 use embassy_stm32::flash::{Blocking, Flash};
 use embassy_stm32::mode::Async;
 use embassy_stm32::peripherals::{FLASH, IWDG};
 use embassy_stm32::usart::{RingBufferedUartRx, UartTx};
 use embassy_stm32::wdg::IndependentWatchdog;
-use embassy_stm32::Peri;
 use embassy_time::Instant;
 
 /// The first of the two 128 KB parameter sectors, as an offset into flash.
@@ -27,7 +27,7 @@ pub async fn serve(
     loop {
         let Ok(count) = rx.read(&mut bytes).await else { continue };
         for &letter in &bytes[..count] {
-            let mut line = Line::new();
+            let mut line = Line::default();
             answer(letter, &mut line, &mut flash, &mut watchdog);
             line.send(tx).await;
         }
@@ -61,8 +61,7 @@ fn answer(
 }
 
 fn samples(line: &mut Line) -> core::fmt::Result {
-    let [count, first, last] =
-        [&imu::SAMPLES, &imu::FIRST_US, &imu::LAST_US].map(|cell| cell.load(Ordering::Relaxed));
+    let [count, first, last] = [&imu::SAMPLES, &imu::FIRST_US, &imu::LAST_US].map(|cell| cell.load(Ordering::Relaxed));
     write!(line, "samples={count} first_us={first} last_us={last}\r\n")
 }
 

@@ -4,8 +4,8 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::gpio::Output;
 use embassy_stm32::mode::Async;
-use embassy_stm32::spi::mode::Master;
 use embassy_stm32::spi::Spi;
+use embassy_stm32::spi::mode::Master;
 use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use embassy_sync::signal::Signal;
 use embassy_time::{Instant, Timer};
@@ -45,9 +45,17 @@ pub async fn sample(mut spi: Bus, mut select: Output<'static>, mut ready: ExtiIn
     read(spi, select, 0x75, &mut id).await;
     WHO_AM_I.store(u32::from(id[0]), Ordering::Relaxed);
     // I2C_IF_DIS; clock from the gyroscope; 200 Hz; 1000 dps; 4 g; latched, cleared by any read.
-    for (register, value) in
-        [(0x6A, 0x10), (0x6B, 0x01), (0x19, 4), (0x1A, 3), (0x1B, 0x10), (0x1C, 0x08), (0x1D, 3), (0x37, 0x30), (0x38, 1)]
-    {
+    for (register, value) in [
+        (0x6A, 0x10),
+        (0x6B, 0x01),
+        (0x19, 4),
+        (0x1A, 3),
+        (0x1B, 0x10),
+        (0x1C, 0x08),
+        (0x1D, 3),
+        (0x37, 0x30),
+        (0x38, 1),
+    ] {
         write(spi, select, register, value).await;
     }
     loop {

@@ -16,7 +16,7 @@ use embassy_stm32::interrupt::{InterruptExt, Priority};
 use embassy_stm32::mode::Async;
 use embassy_stm32::time::Hertz;
 use embassy_stm32::usart::{self, Uart, UartTx};
-use embassy_stm32::{bind_interrupts, dma, peripherals, rcc, spi, Config};
+use embassy_stm32::{Config, bind_interrupts, dma, peripherals, rcc, spi};
 use embassy_time::Timer;
 
 bind_interrupts!(struct Irqs {
@@ -42,10 +42,13 @@ pub struct Line {
     length: usize,
 }
 
-impl Line {
-    pub const fn new() -> Self {
+impl Default for Line {
+    fn default() -> Self {
         Self { bytes: [0; 160], length: 0 }
     }
+}
+
+impl Line {
     pub async fn send(&self, tx: &mut UartTx<'static, Async>) {
         let _ = tx.write(&self.bytes[..self.length]).await;
     }
@@ -98,8 +101,8 @@ async fn main(spawner: Spawner) {
     serial.baudrate = 460_800;
     let uart = Uart::new(p.USART1, p.PA10, p.PA9, p.DMA2_CH7, p.DMA2_CH2, Irqs, serial).unwrap();
     let (mut tx, rx) = uart.split();
-    static mut RECEIVED: [u8; 256] = [0; 256];
-    let mut rx = rx.into_ring_buffered(unsafe { &mut *(&raw mut RECEIVED) });
+    let received = cortex_m::singleton!(: [u8; 256] = [0; 256]).unwrap();
+    let mut rx = rx.into_ring_buffered(received);
 
     spawner.spawn(blink(Output::new(p.PC13, Level::High, Speed::Low)).unwrap());
 
@@ -113,7 +116,7 @@ async fn main(spawner: Spawner) {
     let sampling = SAMPLING.start(interrupt::SPI5);
     sampling.spawn(imu::sample(spi, select, ready).unwrap());
 
-    let mut line = Line::new();
+    let mut line = Line::default();
     let _ = write!(line, "boot csr={csr:08x}\r\n");
     line.send(&mut tx).await;
     commands::serve(&mut rx, &mut tx, p.FLASH, p.IWDG).await
