@@ -15,6 +15,7 @@
 
 pub mod calibration;
 pub mod command;
+pub mod estimate;
 pub mod face;
 pub mod frame;
 pub mod led;
@@ -23,6 +24,7 @@ pub mod motion;
 pub mod procedure;
 pub mod record;
 pub mod sample;
+pub mod tape;
 pub mod verify;
 
 /// Standard gravity in m/s², the unit "g" of recordings and of the sensor's sensitivity (CGPM 1901, exact).

@@ -1,5 +1,12 @@
 //! From samples to what the person did: still, turn or move.
 
+pub mod block;
+pub mod path;
+pub mod segmenter;
+pub mod stillness;
+
+pub use path::RevolutionCheck;
+
 use crate::face::Face;
 
 /// What the segmenter tells the procedure, in the order in which things happen.

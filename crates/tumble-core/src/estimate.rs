@@ -1,0 +1,14 @@
+//! From the tape to numbers with sigmas. `docs/method.md` has the equations.
+
+pub mod device;
+pub mod filter;
+pub mod group;
+pub mod model;
+pub mod noise;
+pub mod start;
+pub mod state;
+pub mod sums;
+pub mod walk;
+
+pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};
+pub use noise::Noise;

@@ -1,0 +1,306 @@
+//! The estimator: passes of a linearised Kalman filter over the tape, each about the last one's result.
+//!
+//! A filter that feeds its estimate back within a pass rectifies attitude noise into scale (up to −340 ppm, `design.md`
+//! §2). Here a pass is linear about a fixed nominal, which makes the passes Gauss–Newton steps of the maximum a posteriori
+//! problem; the prior stays where the first pass had it.
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use super::filter::Filter;
+use super::model::Nominal;
+use super::noise::Noise;
+use super::start;
+use super::state::Block;
+use super::walk::Walk;
+use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
+use crate::motion::segmenter::mean_force;
+use crate::procedure::{BoxFaces, TurnStops};
+use crate::tape::Tape;
+
+/// Prior of a correction element, 1: sheet scale 3 %, cross-axis 2 %, and a chip that sits askew in its box by 3°.
+pub const CORRECTION_SIGMA: f32 = 0.06;
+/// Prior of an accelerometer bias, m/s²: sheet 80 mg.
+const ACCEL_BIAS_SIGMA: f32 = 0.8;
+/// Prior of a gyroscope bias about the mean of all rests, rad/s: far wider than what rests leave (0.1 mrad/s).
+const GYRO_BIAS_SIGMA: f32 = 0.01;
+/// A number is "not observable" where the data bring less than 99 % of what is known of it.
+const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
+/// At least this many passes: three to come near, three to settle the noise, one to confirm.
+const MIN_PASSES: u32 = 7;
+/// At most this many.
+const MAX_PASSES: u32 = 12;
+/// Converged when no parameter moved by more than this many of its sigma.
+const CONVERGED: f32 = 0.05;
+/// Passes before noise is judged by residuals, and passes that judge it: then it stands, so that the last converge.
+const SETTLED: u32 = 3;
+const ADAPTING: u32 = 3;
+/// Width of a narrowed prior in sigmas, and the least sigma (1 or SI) that is believed of an early pass.
+const NARROWED: f32 = 30.0;
+const NARROWEST: f32 = 2e-5;
+/// Moves needed for their median to mean something.
+const MIN_HINGES: usize = 5;
+/// Upper 1e-3 point of χ² with 2 degrees of freedom: one move in a thousand is down-weighted for nothing.
+const HINGE_LIMIT: f32 = 13.8;
+
+/// What the session was told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// How turns end.
+    pub stops: TurnStops,
+    /// Whether the box is square.
+    pub faces: BoxFaces,
+    /// Local gravity, m/s².
+    pub gravity_mps2: f32,
+}
+
+impl Conditions {
+    /// Nothing promised.
+    pub const CAUTIOUS: Self = Self {
+        stops: TurnStops::ByHand,
+        faces: BoxFaces::Unknown,
+        gravity_mps2: crate::STANDARD_GRAVITY_MPS2,
+    };
+
+    /// The axes that results are given in.
+    pub fn frame(&self) -> Frame {
+        if self.faces == BoxFaces::Square { Frame::Box } else { Frame::Accelerometer }
+    }
+}
+
+/// Order of [`Estimate::covariance`]: accelerometer bias 3, correction 9 by rows, gyroscope bias 3, correction 9.
+pub const PARAMETERS: usize = 24;
+
+/// What comes out.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Numbers with sigmas.
+    pub calibration: Calibration,
+    /// Of the parameters, in the order of [`PARAMETERS`].
+    pub covariance: SMatrix<f32, PARAMETERS, PARAMETERS>,
+    /// Noise that the session showed.
+    pub noise: Noise,
+    /// Passes made.
+    pub passes: u32,
+    /// False if parameters still moved in the last pass.
+    pub converged: bool,
+}
+
+/// The arithmetic broke down at this place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Breakdown(pub &'static str);
+
+/// Runs in slices.
+#[derive(Clone, Debug)]
+pub struct Estimator<const S: usize> {
+    conditions: Conditions,
+    noise: Noise,
+    start: Nominal,
+    walk: Walk<S>,
+    passes: u32,
+}
+
+/// Where a run stands.
+#[derive(Clone, Debug)]
+pub enum Progress {
+    /// Part of the work done, 0 to 1, if it takes [`MIN_PASSES`].
+    Working(f32),
+    /// Done.
+    Done(Estimate),
+}
+
+impl<const S: usize> Estimator<S> {
+    /// Prepares the first pass.
+    pub fn new<const R: usize>(tape: &Tape<R, S>, conditions: Conditions) -> Self {
+        let noise = Noise::from_rests(tape, conditions.stops, conditions.faces);
+        let start = start::nominal(tape, conditions.gravity_mps2);
+        let mut walk = Walk::new(start, conditions.gravity_mps2);
+        walk.restart(start, prior(&conditions, &start, &start));
+        Self { conditions, noise, start, walk, passes: 0 }
+    }
+
+    /// Walks up to `records` further.
+    pub fn work<const R: usize>(&mut self, tape: &Tape<R, S>, records: usize) -> Result<Progress, Breakdown> {
+        if !self.walk.advance(tape, &self.noise, records) {
+            let share = self.walk.segments_done() as f32 / tape.segments().len().max(1) as f32;
+            return Ok(Progress::Working((self.passes as f32 + share) / MIN_PASSES as f32));
+        }
+        self.passes += 1;
+        let nominal = improved(self.walk.nominal(), &self.walk.filter);
+        if !is_finite(&nominal) {
+            return Err(Breakdown("estimate"));
+        }
+        let converged = self.passes >= MIN_PASSES && self.largest_move() < CONVERGED;
+        if converged || self.passes >= MAX_PASSES {
+            if !self.walk.filter.covariance().diagonal().iter().all(|variance| *variance >= 0.0) {
+                return Err(Breakdown("covariance"));
+            }
+            return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
+        }
+        self.adapt();
+        let mut prior = prior(&self.conditions, &self.start, &nominal);
+        if self.passes >= 2 {
+            narrow(&mut prior, &self.walk.filter);
+        }
+        self.walk.restart(nominal, prior);
+        Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
+    }
+
+    /// The largest step of this pass over its sigma.
+    fn largest_move(&self) -> f32 {
+        let (state, covariance) = (self.walk.filter.state(), self.walk.filter.covariance());
+        let blocks = [Block::GyroCorrection, Block::AccelCorrection, Block::AccelBias];
+        blocks.into_iter().flat_map(Block::range).fold(0.0, |largest, index| {
+            let sigma = libm::sqrtf(covariance[(index, index)]);
+            if sigma > 0.0 { largest.max(libm::fabsf(state[index]) / sigma) } else { largest }
+        })
+    }
+
+    /// Noise as this pass's innovations show it; the first passes are too far from the truth to tell.
+    fn adapt(&mut self) {
+        if !(SETTLED..SETTLED + ADAPTING).contains(&self.passes) {
+            return;
+        }
+        let sums = self.walk.sums;
+        if let Some(excess) = sums.rate_walk.value() {
+            self.noise.set_bias_walk(self.noise.bias_walk + excess);
+        }
+        if let Some(excess) = sums.force_walk.value() {
+            self.noise.set_force_walk(self.noise.force_walk + excess);
+        }
+        if let Some(excess) = sums.stop.value() {
+            let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
+            self.noise.set_stop_variance(variance + excess, self.conditions.stops);
+        }
+        self.scale_motion();
+    }
+
+    /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
+    /// out even so is down-weighted by itself, as a Student's t distribution would.
+    fn scale_motion(&mut self) {
+        let mut hinges: heapless::Vec<f32, S> =
+            self.walk.noise.iter().map(|noise| noise.hinge_nis).filter(|nis| nis.is_finite()).collect();
+        hinges.sort_unstable_by(f32::total_cmp);
+        if hinges.len() < MIN_HINGES {
+            return;
+        }
+        let excess = (hinges[hinges.len() / 2] / 1.386).max(1.0 / self.noise.motion_scale);
+        self.noise.motion_scale *= excess;
+        for noise in &mut self.walk.noise {
+            let nis = noise.hinge_nis / excess;
+            noise.rate_scale = if nis > HINGE_LIMIT { nis / 2.0 } else { 1.0 };
+        }
+    }
+
+    fn estimate<const R: usize>(&self, tape: &Tape<R, S>, nominal: &Nominal, converged: bool) -> Estimate {
+        let covariance = self.covariance();
+        let sigma = |index: usize| libm::sqrtf(covariance[(index, index)].max(0.0));
+        let triad = |triad: &Triad, first: usize| {
+            let correction_sigma = Matrix3::from_fn(|i, j| sigma(first + 3 + 3 * i + j));
+            TriadEstimate {
+                triad: *triad,
+                bias_sigma: Vector3::from_fn(|i, _| sigma(first + i)),
+                correction_sigma,
+                observable: core::array::from_fn(|i| core::array::from_fn(|j| correction_sigma[(i, j)] < OBSERVABLE)),
+            }
+        };
+        Estimate {
+            calibration: Calibration {
+                accelerometer: triad(&nominal.accel, 0),
+                gyroscope: triad(&nominal.gyro, 12),
+                frame: self.conditions.frame(),
+                temperature_degc: tape.temperature_degc(),
+                fit: self.fit(tape, nominal),
+            },
+            covariance,
+            noise: self.noise,
+            passes: self.passes,
+            converged,
+        }
+    }
+
+    fn covariance(&self) -> SMatrix<f32, PARAMETERS, PARAMETERS> {
+        let blocks = [Block::AccelBias, Block::AccelCorrection, Block::GyroBias, Block::GyroCorrection];
+        let mut order = [0usize; PARAMETERS];
+        for (to, from) in order.iter_mut().zip(blocks.into_iter().flat_map(Block::range)) {
+            *to = from;
+        }
+        SMatrix::from_fn(|i, j| self.walk.filter.covariance()[(order[i], order[j])])
+    }
+
+    fn fit<const R: usize>(&self, tape: &Tape<R, S>, nominal: &Nominal) -> Fit {
+        let (mut squares, mut largest, mut count) = (0.0f32, 0.0f32, 0.0f32);
+        for segment in tape.segments().iter().filter(|segment| segment.is_usable_still()) {
+            let raw = mean_force(tape, usize::from(segment.first), usize::from(segment.end));
+            let error = nominal.accel.compensate(&raw).norm() - self.conditions.gravity_mps2;
+            squares += error * error;
+            largest = largest.max(libm::fabsf(error));
+            count += 1.0;
+        }
+        let sums = self.walk.sums;
+        let moves = self.walk.noise.iter().filter(|noise| noise.hinge_nis.is_finite());
+        let (hinge, dof) = moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
+        Fit {
+            nis_per_dof: (sums.rest.0 + hinge) / (sums.rest.1 + dof).max(1.0),
+            gravity_rms_mps2: libm::sqrtf(squares / count.max(1.0)),
+            gravity_max_mps2: largest,
+            turn_closure_rms_rad: libm::sqrtf(sums.closed.0 / sums.closed.1.max(1.0)),
+        }
+    }
+}
+
+/// The prior about a nominal: its mean stays at the start, whatever the nominal has become.
+fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Filter {
+    let mut filter = Filter::default();
+    let mut set = |block, sigma: f32, start: &Triad, now: &Triad| {
+        for i in 0..3 {
+            for j in 0..3 {
+                // Frame b is the accelerometer's own where no box gives one: its correction is lower-triangular.
+                let fixed = block == Block::AccelCorrection && j > i && conditions.frame() == Frame::Accelerometer;
+                let mean = start.correction[(i, j)] - now.correction[(i, j)];
+                filter.reset(block, 3 * i + j, mean, if fixed { 0.0 } else { sigma });
+            }
+        }
+    };
+    set(Block::GyroCorrection, CORRECTION_SIGMA, &start.gyro, &nominal.gyro);
+    set(Block::AccelCorrection, CORRECTION_SIGMA, &start.accel, &nominal.accel);
+    for axis in 0..3 {
+        filter.reset(Block::GyroBias, axis, start.gyro.bias[axis] - nominal.gyro.bias[axis], GYRO_BIAS_SIGMA);
+        filter.reset(Block::AccelBias, axis, start.accel.bias[axis] - nominal.accel.bias[axis], ACCEL_BIAS_SIGMA);
+    }
+    filter
+}
+
+/// Replaces the prior of what is well determined by one about the last pass's result, [`NARROWED`] times its sigma wide: it
+/// adds a thousandth to what the data say, and spares `f32` the collapse of a variance by seven orders of magnitude.
+fn narrow(prior: &mut Filter, posterior: &Filter) {
+    for block in [Block::GyroCorrection, Block::AccelCorrection, Block::AccelBias, Block::GyroBias] {
+        for (offset, index) in block.range().enumerate() {
+            let found = posterior.covariance()[(index, index)].max(0.0);
+            let narrowed = NARROWED * libm::sqrtf(found).max(NARROWEST);
+            if narrowed * narrowed < prior.covariance()[(index, index)] {
+                prior.reset(block, offset, 0.0, narrowed);
+            }
+        }
+    }
+}
+
+fn improved(nominal: &Nominal, filter: &Filter) -> Nominal {
+    let triad = |triad: &Triad, correction: Block, bias: Block| Triad {
+        bias: triad.bias + filter.vector(bias, 0),
+        correction: Matrix3::from_fn(|i, j| triad.correction[(i, j)] + filter.state()[correction.start() + 3 * i + j]),
+    };
+    Nominal {
+        gyro: triad(&nominal.gyro, Block::GyroCorrection, Block::GyroBias),
+        accel: triad(&nominal.accel, Block::AccelCorrection, Block::AccelBias),
+    }
+}
+
+fn is_finite(nominal: &Nominal) -> bool {
+    [nominal.gyro, nominal.accel]
+        .iter()
+        .all(|triad| triad.bias.iter().chain(triad.correction.iter()).all(|value| value.is_finite()))
+}
+impl<const S: usize> Estimator<S> {
+    #[doc(hidden)]
+    pub fn dbg(&self) -> (&Walk<S>, &Noise, u32) { (&self.walk, &self.noise, self.passes) }
+}

@@ -1,0 +1,77 @@
+//! Half a second of motion as one step of the filter.
+//!
+//! In frame n attitude errors only add up, so the steps of many records sum to one transition and their gravity readings to
+//! one mean reading: nothing is lost but what a hand's 8–12 Hz tremor does, which the mean suppresses, and the filter's work
+//! falls tenfold.
+
+use nalgebra::Vector3;
+
+use super::filter::{AttitudeDrive, Filter, Innovation};
+use super::model::GravityParts;
+
+/// Sums over the records of a group.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Group {
+    /// Records in it.
+    pub records: u16,
+    /// Length, s.
+    pub seconds: f32,
+    drive: AttitudeDrive,
+    since_mean: AttitudeDrive,
+    gravity: GravityParts,
+}
+
+impl Group {
+    /// Adds a record: its attitude drive and, on the table, its gravity reading.
+    pub fn take(&mut self, drive: &AttitudeDrive, gravity: Option<&GravityParts>, dt_s: f32) {
+        self.drive.add(drive, 1.0);
+        // A record's drive is missed by the readings of all records before and by half of its own.
+        self.since_mean.add(drive, self.seconds + 0.5 * dt_s);
+        if let Some(gravity) = gravity {
+            self.gravity.add(gravity, dt_s);
+        }
+        self.records += 1;
+        self.seconds += dt_s;
+    }
+
+    /// Carries the filter over the group; `density` is the rotation's variance per second.
+    pub fn propagate(&self, filter: &mut Filter, density: f32) {
+        filter.propagate(&self.drive, density * self.seconds);
+    }
+
+    /// Takes in the mean gravity reading after [`Self::propagate`].
+    pub fn observe(&self, filter: &mut Filter, gravity_mps2: f32, variance: f32) -> [Innovation; 3] {
+        let share = 1.0 / self.seconds;
+        let mut mean = GravityParts::default();
+        mean.add(&self.gravity, share);
+        let mut since = AttitudeDrive::default();
+        since.add(&self.since_mean, share);
+        core::array::from_fn(|axis| {
+            let observation = mean.observation(axis, gravity_mps2, Some(&since));
+            filter.observe(&observation.row, observation.residual, variance)
+        })
+    }
+}
+
+/// How much noisier than rest a turn's readings are: innovations against what they should be.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TurnNoise {
+    squares: f32,
+    variances: f32,
+    noise: f32,
+}
+
+impl TurnNoise {
+    /// Takes a group's innovations, whose readings were given `variance`.
+    pub fn take(&mut self, innovations: &[Innovation; 3], variance: f32) {
+        let values = Vector3::from(innovations.map(|innovation| innovation.value));
+        self.squares += values.norm_squared();
+        self.variances += innovations.iter().map(|innovation| innovation.variance).sum::<f32>();
+        self.noise += 3.0 * variance;
+    }
+
+    /// What the variance should be multiplied by for squares to agree with variances; none without data.
+    pub fn factor(&self) -> Option<f32> {
+        (self.noise > 0.0).then(|| 1.0 + (self.squares - self.variances) / self.noise)
+    }
+}

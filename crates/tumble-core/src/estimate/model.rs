@@ -1,0 +1,173 @@
+//! The physics: nominal parameters, and the observation rows that follow from them. Derivations: `docs/method.md`.
+
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+use super::filter::AttitudeDrive;
+use super::state::{Block, Row};
+use crate::calibration::Triad;
+use crate::tape::Record;
+
+/// What the error state is an error of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nominal {
+    /// Gyroscope, rad/s.
+    pub gyro: Triad,
+    /// Accelerometer, m/s².
+    pub accel: Triad,
+}
+
+/// A residual and the row that explains it: `residual = row · state + noise`.
+pub struct Observation {
+    /// Observed minus nominal.
+    pub residual: f32,
+    /// Coefficients.
+    pub row: Row,
+}
+
+/// `[v×]`.
+pub fn cross_matrix(v: &Vector3<f32>) -> Matrix3<f32> {
+    v.cross_matrix()
+}
+
+impl Nominal {
+    /// Rotation vector of a record, calibrated, rad, frame b.
+    pub fn rotation(&self, record: &Record) -> Vector3<f32> {
+        self.gyro.correction * (record.rotation_rad - self.gyro.bias * record.dt_s)
+    }
+
+    /// Specific force of a record, calibrated, m/s², frame b.
+    pub fn force(&self, record: &Record) -> Vector3<f32> {
+        self.accel.compensate(&record.specific_force_mps2)
+    }
+
+    /// How attitude errors grow over a record: `φ ← φ + R (δM (Θ − b dt) − M δb dt) − Ω dt`, R at the record's middle.
+    pub fn drive(&self, record: &Record, middle: &Matrix3<f32>) -> AttitudeDrive {
+        let raw = record.rotation_rad - self.gyro.bias * record.dt_s;
+        let mut correction = SMatrix::<f32, 3, 9>::zeros();
+        for row in 0..3 {
+            for column in 0..3 {
+                correction.set_column(3 * row + column, &(middle.column(row) * raw[column]));
+            }
+        }
+        AttitudeDrive { correction, bias: -(middle * self.gyro.correction) * record.dt_s, earth: -record.dt_s }
+    }
+
+    /// Specific force against gravity, in parts that can be averaged over records: see [`GravityParts`].
+    pub fn gravity(&self, record: &Record, to_n: &Matrix3<f32>, gravity: f32, lever: &Matrix3<f32>) -> GravityParts {
+        let raw = record.specific_force_mps2 - self.accel.bias;
+        let mut correction = SMatrix::<f32, 3, 9>::zeros();
+        for inner in 0..3 {
+            for column in 0..3 {
+                correction.set_column(3 * inner + column, &(to_n.column(inner) * -raw[column]));
+            }
+        }
+        let bias = to_n * self.accel.correction;
+        GravityParts {
+            residual: bias * raw - Vector3::new(0.0, 0.0, gravity),
+            correction,
+            bias,
+            lever: to_n * lever,
+        }
+    }
+
+    /// Rate at rest, one component in frame b: `M (raw − b) = M δb + Rᵀ Ω` (δM times a rate near zero is left out).
+    pub fn rest_rate(&self, record: &Record, to_b: &Matrix3<f32>) -> [Observation; 3] {
+        let residual = self.rotation(record) / record.dt_s;
+        core::array::from_fn(|axis| Observation {
+            residual: residual[axis],
+            row: Row::new()
+                .with_vector(Block::GyroBias, 0, &self.gyro.correction.row(axis).transpose())
+                .with_vector(Block::Earth, 0, &to_b.row(axis).transpose()),
+        })
+    }
+}
+
+/// Specific force against gravity, frame n:
+/// `R A (raw − a) − g ẑ = −R δA (raw − a) + R A δa − g φ × ẑ + R L l`, `L = [ω×]² + [ω̇×]`. Attitude errors show in the
+/// horizontal components alone, so the vertical tells of the accelerometer and the others of the motion.
+#[derive(Clone, Copy, Debug)]
+pub struct GravityParts {
+    /// Left side, m/s².
+    pub residual: Vector3<f32>,
+    /// Coefficients of δA.
+    pub correction: SMatrix<f32, 3, 9>,
+    /// Coefficients of δa.
+    pub bias: Matrix3<f32>,
+    /// Coefficients of l.
+    pub lever: Matrix3<f32>,
+}
+
+impl Default for GravityParts {
+    fn default() -> Self {
+        Self {
+            residual: Vector3::zeros(),
+            correction: SMatrix::zeros(),
+            bias: Matrix3::zeros(),
+            lever: Matrix3::zeros(),
+        }
+    }
+}
+
+impl GravityParts {
+    /// Adds `weight · other`.
+    pub fn add(&mut self, other: &Self, weight: f32) {
+        self.residual += other.residual * weight;
+        self.correction += other.correction * weight;
+        self.bias += other.bias * weight;
+        self.lever += other.lever * weight;
+    }
+
+    /// One component's row. `since`: how attitude has moved on from the mean of the records to now,
+    /// `φ_mean = φ − since · (δM, δb, Ω)`; none at rest.
+    pub fn observation(&self, axis: usize, gravity: f32, since: Option<&AttitudeDrive>) -> Observation {
+        let mut row = Row::new().with_vector(Block::AccelBias, 0, &self.bias.row(axis).transpose());
+        for index in 0..9 {
+            row = row.with(Block::AccelCorrection, index, self.correction[(axis, index)]);
+        }
+        let tilt = match axis {
+            0 => Some((1, -gravity)),
+            1 => Some((0, gravity)),
+            _ => None,
+        };
+        if let Some((attitude, coefficient)) = tilt {
+            row = row.with(Block::Attitude, attitude, coefficient);
+            if let Some(since) = since {
+                row = since.add_to(row, attitude, -coefficient);
+            }
+        }
+        if since.is_some() {
+            row = row.with_vector(Block::Lever, 0, &self.lever.row(axis).transpose());
+        }
+        Observation { residual: self.residual[axis], row }
+    }
+}
+
+/// The face that lies on the table is parallel to it: horizontal components of `R (n + e) = p`, n the face's normal.
+/// `p = (R n)ₓᵧ + (φ × R n)ₓᵧ + (R e)ₓᵧ` as (mean, row) per component; `plane_n` holds the two box axes that e is
+/// measured along.
+pub fn plate(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2]) -> [Observation; 2] {
+    let facet = |row: Row, axis: usize| {
+        row.with(Block::Facet, 0, plane_n[0][axis]).with(Block::Facet, 1, plane_n[1][axis])
+    };
+    let x = Row::new().with(Block::Attitude, 1, normal_n.z).with(Block::Attitude, 2, -normal_n.y);
+    let y = Row::new().with(Block::Attitude, 2, normal_n.x).with(Block::Attitude, 0, -normal_n.z);
+    [Observation { residual: normal_n.x, row: facet(x, 0) }, Observation { residual: normal_n.y, row: facet(y, 1) }]
+}
+
+/// Heading error about the table's normal, `φ · n`, as a row.
+pub fn heading(normal_n: &Vector3<f32>) -> Row {
+    Row::new().with_vector(Block::Attitude, 0, normal_n)
+}
+
+/// A stop against the fence: what is left of the rotation since the first stop after whole turns,
+/// `log(R R₀ᵀ) · n = −φ · n + h + stop error`.
+pub fn fence(now: &UnitQuaternion<f32>, first: &UnitQuaternion<f32>, normal_n: &Vector3<f32>) -> Observation {
+    let left = (now * first.inverse()).scaled_axis().dot(normal_n);
+    Observation { residual: left, row: heading(&-normal_n).with(Block::Fence, 0, 1.0) }
+}
+
+/// Lever matrix `[ω×]² + [ω̇×]`.
+pub fn lever(rate: &Vector3<f32>, acceleration: &Vector3<f32>) -> Matrix3<f32> {
+    let w = cross_matrix(rate);
+    w * w + cross_matrix(acceleration)
+}

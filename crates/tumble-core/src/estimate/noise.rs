@@ -1,0 +1,150 @@
+//! What noise the session shows: from the scatter of its own rests first, from innovations later.
+
+use heapless::Vec;
+
+use crate::DEGREE_RAD;
+use crate::procedure::{BoxFaces, TurnStops};
+use crate::tape::{Kind, Segment, Tape};
+
+/// MPU-9250 sheet: 0.01 °/s/√Hz. The double-sided density of a rate is half of its square.
+pub const SHEET_RATE_DENSITY: f32 = 0.01 * DEGREE_RAD * core::f32::consts::FRAC_1_SQRT_2;
+/// MPU-9250 sheet: 300 µg/√Hz, likewise.
+pub const SHEET_FORCE_DENSITY: f32 = 300e-6 * crate::STANDARD_GRAVITY_MPS2 * core::f32::consts::FRAC_1_SQRT_2;
+/// A stop against a fence is never believed better than this, rad (5 millidegrees: 5 µm on a 6 cm box).
+const FENCE_FLOOR: f32 = 0.005 * DEGREE_RAD;
+/// A person who stops by eye: 2° (sim, `design.md` §2), never believed better than a quarter of a degree.
+const BY_HAND: f32 = 2.0 * DEGREE_RAD;
+const BY_HAND_FLOOR: f32 = 0.25 * DEGREE_RAD;
+/// What a stop against a fence is taken for before its innovations are seen.
+const FENCED: f32 = 0.05 * DEGREE_RAD;
+/// A face of a box that its owner calls square, rad: 1 µm on 5 cm.
+const SQUARE: f32 = 20e-6;
+/// A bias wanders at least 1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
+const WALK_FLOOR: f32 = 1e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
+const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
+/// Likewise 10 µg in 100 s and 3 mg, (m/s²)²/s.
+const FORCE_WALK_FLOOR: f32 = 1e-10;
+const FORCE_WALK_CAP: f32 = 1e-5;
+
+/// Densities and sigmas in force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// Variance of a rotation per second of integration, rad²/s.
+    pub rate_density: f32,
+    /// Variance of a mean specific force times its duration, (m/s²)² s.
+    pub force_density: f32,
+    /// Growth of a gyroscope bias's variance, (rad/s)²/s.
+    pub bias_walk: f32,
+    /// Growth of an accelerometer bias's variance, (m/s²)²/s.
+    pub force_walk: f32,
+    /// Factor on `rate_density` while it moves.
+    pub motion_scale: f32,
+    /// One stop of a turn, rad.
+    pub stop_sigma_rad: f32,
+    /// One face of the box, rad; none where it is not known to be square.
+    pub facet_sigma_rad: Option<f32>,
+    /// Rates' sample variance of the quietest rest, (rad/s)².
+    pub quiet_variance: f32,
+}
+
+impl Noise {
+    /// From the rests' scatter.
+    pub fn from_rests<const R: usize, const S: usize>(tape: &Tape<R, S>, stops: TurnStops, faces: BoxFaces) -> Self {
+        let mut quiet_variance = f32::INFINITY;
+        for segment in tape.segments().iter().filter(|segment| segment.is_usable_still()) {
+            if let Kind::Still { rate_variance, .. } = segment.kind {
+                quiet_variance = quiet_variance.min(rate_variance);
+            }
+        }
+        let mut rate = Vec::<(f32, f32), S>::new();
+        let mut force = Vec::<(f32, f32), S>::new();
+        for segment in tape.segments().iter().filter(|segment| segment.is_usable_still()) {
+            if is_solid(segment, quiet_variance) {
+                let scatter = scatter(tape, segment);
+                let _ = rate.push((scatter.rate, scatter.count));
+                let _ = force.push((scatter.force, scatter.count));
+            }
+        }
+        let bounded = |found: Option<f32>, sheet: f32| {
+            let sheet = sheet * sheet;
+            found.unwrap_or(sheet).clamp(0.01 * sheet, 1e4 * sheet)
+        };
+        Self {
+            rate_density: bounded(pooled(&mut rate), SHEET_RATE_DENSITY),
+            force_density: bounded(pooled(&mut force), SHEET_FORCE_DENSITY),
+            bias_walk: WALK_FLOOR,
+            force_walk: FORCE_WALK_FLOOR,
+            motion_scale: 1.0,
+            stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
+            facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
+            quiet_variance,
+        }
+    }
+
+    /// Bias walk from how rates at the beginning of rests differed from what was expected.
+    pub fn set_bias_walk(&mut self, found: f32) {
+        self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
+    }
+
+    /// Likewise for the accelerometer.
+    pub fn set_force_walk(&mut self, found: f32) {
+        self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
+    }
+
+    /// Stop variance from the closures' innovations.
+    pub fn set_stop_variance(&mut self, found: f32, stops: TurnStops) {
+        let (floor, cap) = match stops {
+            TurnStops::Fenced => (FENCE_FLOOR, BY_HAND),
+            TurnStops::ByHand => (BY_HAND_FLOOR, 3.0 * BY_HAND),
+        };
+        self.stop_sigma_rad = libm::sqrtf(found.max(0.0)).clamp(floor, cap);
+    }
+}
+
+/// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which
+/// by chance alone happens to less than one still in a million (100 independent values: χ²₁₀₀/100 > 2).
+pub fn is_solid(segment: &Segment, quiet_variance: f32) -> bool {
+    matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= 2.0 * quiet_variance)
+}
+
+/// Densities of one still, from the differences of neighbouring half-second means.
+pub struct Scatter {
+    /// rad²/s.
+    pub rate: f32,
+    /// (m/s²)² s.
+    pub force: f32,
+    /// Differences it stands on, over three axes.
+    pub count: f32,
+}
+
+/// A difference of two means of independent noise has twice the variance of one, slow drifts cancel.
+pub fn scatter<const R: usize, const S: usize>(tape: &Tape<R, S>, segment: &Segment) -> Scatter {
+    let mut result = Scatter { rate: 0.0, force: 0.0, count: 0.0 };
+    for index in usize::from(segment.first)..usize::from(segment.end).saturating_sub(1) {
+        let (Some(a), Some(b)) = (tape.record(index), tape.record(index + 1)) else { continue };
+        let harmonic = 1.0 / (1.0 / a.dt_s + 1.0 / b.dt_s);
+        let rate = a.rotation_rad / a.dt_s - b.rotation_rad / b.dt_s;
+        let force = a.specific_force_mps2 - b.specific_force_mps2;
+        result.rate += rate.norm_squared() * harmonic;
+        result.force += force.norm_squared() * harmonic;
+        result.count += 3.0;
+    }
+    if result.count > 0.0 {
+        result.rate /= result.count;
+        result.force /= result.count;
+    }
+    result
+}
+
+/// Mean weighted by counts, without values above four times the median: a disturbed rest does not make all noisy.
+fn pooled<const S: usize>(values: &mut Vec<(f32, f32), S>) -> Option<f32> {
+    values.retain(|value| value.1 > 0.0 && value.0.is_finite());
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let median = values.get(values.len() / 2)?.0;
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for &(value, count) in values.iter().filter(|value| value.0 <= 4.0 * median) {
+        sum += value * count;
+        weight += count;
+    }
+    (weight > 0.0).then(|| sum / weight)
+}

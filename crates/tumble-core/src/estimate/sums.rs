@@ -1,0 +1,54 @@
+//! What a pass's innovations say of the noise.
+
+use super::filter::Innovation;
+
+/// What a pass learns about a segment, carried into the next.
+#[derive(Clone, Copy, Debug)]
+pub struct SegmentNoise {
+    /// Factor on the specific force's noise.
+    pub force_scale: f32,
+    /// Factor on the gyroscope's noise during this move.
+    pub rate_scale: f32,
+    /// Level error after this move about the nominal, normalised without `rate_scale`: χ² with 2 degrees of freedom if the
+    /// move fits. NaN if there was no rest on both sides.
+    pub hinge_nis: f32,
+}
+
+/// Sums over a pass.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sums {
+    /// NIS and count over specific force at rest.
+    pub rest: (f32, f32),
+    /// First vertical specific forces of rests: the growth of variance since the rest before.
+    pub force_walk: Excess,
+    /// First rates of rests: likewise.
+    pub rate_walk: Excess,
+    /// Closures: a stop's variance.
+    pub stop: Excess,
+    /// Plates: a face's variance.
+    pub facet: Excess,
+    /// Closure residuals, rad² and count.
+    pub closed: (f32, f32),
+}
+
+/// Innovations that should have variance `S + c q` for an unknown q: the method of moments, weighted as maximum
+/// likelihood would, `q = Σ c (ν² − S) / S² ÷ Σ c² / S²`, S being the variance with the q of this pass.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Excess {
+    numerator: f32,
+    denominator: f32,
+}
+
+impl Excess {
+    /// Takes an innovation in.
+    pub fn take(&mut self, innovation: &Innovation, coefficient: f32) {
+        let weight = coefficient / (innovation.variance * innovation.variance);
+        self.numerator += weight * (innovation.value * innovation.value - innovation.variance);
+        self.denominator += weight * coefficient;
+    }
+
+    /// What q would have to grow by; none without data.
+    pub fn value(&self) -> Option<f32> {
+        (self.denominator > 0.0).then(|| self.numerator / self.denominator)
+    }
+}
