@@ -1,7 +1,7 @@
 //! What is read, written, inferred, and seen in real recordings.
 
 use host_tests::recording;
-use tumble::recording::{Basis, BoxShape, Inference, Metadata, Recording, Row, Turns, as_board_reads};
+use tumble::recording::{Basis, BoxFaces, Inference, Metadata, Recording, Row, TurnStops, as_board_reads};
 use tumble_core::sample::Ranges;
 
 fn row(i: u32, gyro_dps: [f64; 3], accel_g: [f64; 3]) -> Row {
@@ -16,8 +16,8 @@ fn sample_recording() -> Recording {
         rate_hz: Some(200.0),
         gravity_mps2: Some(9.81),
         latitude_deg: Some(-31.3),
-        turns: Some(Turns::Fenced),
-        box_shape: Some(BoxShape::Square),
+        turns: Some(TurnStops::Fenced),
+        box_faces: Some(BoxFaces::Square),
     };
     let rows =
         (0..50).map(|i| row(i, [f64::from(i) / 7.0, -1e-9, 1500.0 - f64::from(i)], [1.0 / 3.0, 0.9, -0.1])).collect();
@@ -46,7 +46,7 @@ fn any_column_order_unknown_columns_marks_and_spaces() {
     let text = "\u{feff}# note\n# turns: by-hand\nname, az_g ,ay_g,ax_g,temp_c,gz_dps,gy_dps,gx_dps,t_s,extra\n\
                 a,1,0.5,0.25,nan,3,2,1,0.0,nan\n b , 1 , 0.5,0.25,21.5,3,2,1e0,0.01,\n";
     let recording = Recording::from_bytes(text.as_bytes(), "rec.csv").expect("allowed by the contract");
-    assert_eq!(recording.metadata.turns, Some(Turns::ByHand));
+    assert_eq!(recording.metadata.turns, Some(TurnStops::ByHand));
     assert_eq!(recording.rows.len(), 2);
     assert_eq!(recording.rows[0].channels(), [1.0, 2.0, 3.0, 0.25, 0.5, 1.0]);
     assert_eq!(recording.rows.iter().map(|row| row.temp_c).collect::<Vec<_>>(), [None, Some(21.5)]);

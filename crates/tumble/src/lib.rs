@@ -4,4 +4,10 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod calibrate;
+pub mod cli;
+pub mod export;
+pub mod output;
 pub mod recording;
+pub mod serial;
+pub mod simulate;

@@ -1,26 +1,8 @@
 //! The `# key: value` lines above the header.
 
+pub use tumble_core::procedure::{BoxFaces, TurnStops};
+
 use super::error::Problem;
-
-/// How a turn ends, which decides what its closure is worth.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Turns {
-    /// Against a stop, good to 0.1°.
-    Fenced,
-    /// By eye, good to 2°: the cautious default.
-    #[default]
-    ByHand,
-}
-
-/// Whether the box's faces are square to each other.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BoxShape {
-    /// They are, so they define the axes.
-    Square,
-    /// Nobody says so: the cautious default.
-    #[default]
-    Unknown,
-}
 
 /// What the recording says of itself. Nothing is required.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,9 +20,9 @@ pub struct Metadata {
     /// Geographic latitude.
     pub latitude_deg: Option<f64>,
     /// How turns end, where it is said.
-    pub turns: Option<Turns>,
+    pub turns: Option<TurnStops>,
     /// What the box is, where it is said.
-    pub box_shape: Option<BoxShape>,
+    pub box_faces: Option<BoxFaces>,
 }
 
 impl Metadata {
@@ -56,7 +38,7 @@ impl Metadata {
             "gravity_mps2" => self.gravity_mps2 = Some(gravity(value)?),
             "latitude_deg" => self.latitude_deg = Some(latitude(value)?),
             "turns" => self.turns = Some(turns(value)?),
-            "box" => self.box_shape = Some(box_shape(value)?),
+            "box" => self.box_faces = Some(box_faces(value)?),
             _ => {}
         }
         Ok(())
@@ -77,8 +59,8 @@ impl Metadata {
         push("rate_hz", number(self.rate_hz));
         push("gravity_mps2", number(self.gravity_mps2));
         push("latitude_deg", number(self.latitude_deg));
-        push("turns", self.turns.map(|t| if t == Turns::Fenced { "fenced" } else { "by-hand" }.into()));
-        push("box", self.box_shape.map(|b| if b == BoxShape::Square { "square" } else { "unknown" }.into()));
+        push("turns", self.turns.map(|turns| turns.name().into()));
+        push("box", self.box_faces.map(|faces| faces.name().into()));
         lines
     }
 }
@@ -112,18 +94,16 @@ fn latitude(value: &str) -> Result<f64, Problem> {
     })
 }
 
-fn turns(value: &str) -> Result<Turns, Problem> {
-    match value {
-        "fenced" => Ok(Turns::Fenced),
-        "by-hand" => Ok(Turns::ByHand),
-        _ => Err(Problem::Metadata { key: "turns", value: value.into(), allowed: "fenced or by-hand" }),
-    }
+pub(crate) fn turns(value: &str) -> Result<TurnStops, Problem> {
+    [TurnStops::Fenced, TurnStops::ByHand]
+        .into_iter()
+        .find(|turns| turns.name() == value)
+        .ok_or_else(|| Problem::Metadata { key: "turns", value: value.into(), allowed: "fenced or by-hand" })
 }
 
-fn box_shape(value: &str) -> Result<BoxShape, Problem> {
-    match value {
-        "square" => Ok(BoxShape::Square),
-        "unknown" => Ok(BoxShape::Unknown),
-        _ => Err(Problem::Metadata { key: "box", value: value.into(), allowed: "square or unknown" }),
-    }
+pub(crate) fn box_faces(value: &str) -> Result<BoxFaces, Problem> {
+    [BoxFaces::Square, BoxFaces::Unknown]
+        .into_iter()
+        .find(|faces| faces.name() == value)
+        .ok_or_else(|| Problem::Metadata { key: "box", value: value.into(), allowed: "square or unknown" })
 }

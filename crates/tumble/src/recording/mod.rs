@@ -15,7 +15,9 @@ use tumble_core::sample::{Counts, Ranges, Sample};
 
 pub use error::{Problem, RecordingError};
 pub use inference::{Basis, Gap, Inference, Known};
-pub use metadata::{BoxShape, Metadata, Turns};
+pub use metadata::{BoxFaces, Metadata, TurnStops};
+pub(crate) use metadata::{box_faces, turns};
+pub use writer::RowWriter;
 
 /// Exact by definition (CGPM 1901).
 pub const STANDARD_GRAVITY_MPS2: f64 = 9.806_65;

@@ -1,0 +1,108 @@
+//! `tumble calibrate`.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use tumble_core::estimate::Conditions;
+use tumble_core::sample::Ranges;
+
+use super::output::Progress;
+use super::{Refusal, TurnsWord, output};
+use crate::calibrate::{self, replay};
+use crate::output::{Report, table};
+use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
+
+/// Where the axes of compensated data come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Reference {
+    /// The faces of the box, taken as square
+    Box,
+    /// Gravity alone; the accelerometer defines the axes
+    Gravity,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Recording to calibrate from
+    #[arg(value_name = "REC.csv")]
+    recording: PathBuf,
+    /// Print the contract's JSON object instead of a table
+    #[arg(long)]
+    json: bool,
+    /// What defines the axes, instead of what the recording states of its box
+    #[arg(long, value_enum)]
+    reference: Option<Reference>,
+    /// How turns end, instead of what the recording states
+    #[arg(long, value_enum)]
+    turns: Option<TurnsWord>,
+    /// First round every reading to the board's counts (±2000 °/s, ±16 g), as a replay on the emulated board does
+    #[arg(long)]
+    board_counts: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
+    match Recording::read(&arguments.recording) {
+        Ok(recording) => estimate(arguments, &recording),
+        Err(error) => {
+            let refusal = Refusal::from(error);
+            if arguments.json {
+                print_json(&Report::refused(refusal.reasons.clone()))?;
+            }
+            Err(refusal)
+        }
+    }
+}
+
+fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal> {
+    let inference = Inference::of(recording);
+    let readings = readings(arguments, recording, &inference);
+    let conditions = conditions(arguments, recording);
+    let mut progress = Progress::new();
+    let outcome = replay(&readings, recording.origin_s(), conditions, &mut |share| {
+        progress.share("estimating", share);
+    });
+    drop(progress);
+    let report = Report::of(&outcome);
+    if arguments.json {
+        print_json(&report)?;
+    } else {
+        output::print(&(table::recording(recording, &inference) + &table::report(&report)))?;
+    }
+    if report.is_accepted() { Ok(()) } else { Err(rejected(&arguments.recording, &report)) }
+}
+
+fn readings(arguments: &Arguments, recording: &Recording, inference: &Inference) -> Vec<Reading> {
+    let mut readings = recording.samples(inference);
+    if arguments.board_counts {
+        for reading in &mut readings {
+            *reading = as_board_reads(reading, &Ranges::WIDEST);
+        }
+    }
+    readings
+}
+
+fn conditions(arguments: &Arguments, recording: &Recording) -> Conditions {
+    let stated = calibrate::conditions(&recording.metadata);
+    Conditions {
+        stops: arguments.turns.map_or(stated.stops, Into::into),
+        faces: match arguments.reference {
+            Some(Reference::Box) => BoxFaces::Square,
+            Some(Reference::Gravity) => BoxFaces::Unknown,
+            None => stated.faces,
+        },
+        ..stated
+    }
+}
+
+fn print_json(report: &Report) -> Result<(), Refusal> {
+    Ok(output::print(&(serde_json::to_string(report)? + "\n"))?)
+}
+
+fn rejected(file: &Path, report: &Report) -> Refusal {
+    let file = file.display();
+    if report.reasons.is_empty() {
+        return Refusal::one(format!("{file}: rejected"));
+    }
+    let reasons = report.reasons.iter().map(|reason| format!("{file}: rejected: {reason}")).collect();
+    Refusal { reasons, status: 1 }
+}

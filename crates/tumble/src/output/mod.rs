@@ -1,0 +1,8 @@
+//! What a calibration looks like outside: the contract's JSON ([`Report`]) and a page for the terminal ([`table`]).
+
+mod report;
+pub mod table;
+
+pub use report::{
+    Covariance, FitReport, GyroscopeReport, Matrix, Report, SegmentReport, TriadReport, Vector, covariance_order,
+};
