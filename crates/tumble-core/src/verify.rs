@@ -5,7 +5,7 @@
 //! finds it? [`limits`] derives how far off a true calibration may be.
 
 pub mod limits;
-mod propagate;
+pub mod propagate;
 #[cfg(test)]
 mod tests;
 

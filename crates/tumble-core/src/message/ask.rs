@@ -145,7 +145,7 @@ fn turn(face: Face, direction: Option<Direction>, stops: TurnStops, w: &mut impl
     };
     let end = match stops {
         TurnStops::Fenced => "until it rests against its stop again",
-        TurnStops::ByHand => "back to where it points now, as well as your eye can tell",
+        TurnStops::ByHand => "back to where it began, as well as your eye can tell",
     };
     write!(
         w,

@@ -127,7 +127,7 @@ impl Refused {
             Self::Face { face } => write!(w, "@refused what=still face={} why=again", face.name()),
             Self::Finish { faces: missing, axes } => {
                 write!(w, "@refused what=finish faces={} axes=", faces(*missing))?;
-                write_axes(*axes, w)?;
+                write_axes(*axes, ",", w)?;
                 w.write_str(" why=minimum")
             }
             Self::Pose => w.write_str("@refused what=pose why=again"),
@@ -162,16 +162,16 @@ fn finish_human(missing: FaceSet, axes: u8, w: &mut impl Write) -> fmt::Result {
     }
     if axes != 0 {
         w.write_str(if missing.is_empty() { " a turn about " } else { "; a turn about " })?;
-        write_axes(axes, w)?;
+        write_axes(axes, " and ", w)?;
     }
     w.write_str(".")
 }
 
-fn write_axes(axes: u8, w: &mut impl Write) -> fmt::Result {
+fn write_axes(axes: u8, separator: &str, w: &mut impl Write) -> fmt::Result {
     let mut gap = "";
     for i in (0..3).filter(|i| axes >> i & 1 == 1) {
         write!(w, "{gap}{}", words::axis(i))?;
-        gap = ",";
+        gap = separator;
     }
     if gap.is_empty() { w.write_str("-") } else { Ok(()) }
 }

@@ -51,34 +51,12 @@ impl Display for Reason {
         match self {
             Self::FacesMissing { missing } => faces_missing(*missing, f),
             Self::TurnsMissing { axes } => turns_missing(*axes, f),
-            Self::Clipped { channel, samples } => {
-                let (sensor, remedy) = if *channel < 3 {
-                    ("gyroscope", "Turn more slowly.")
-                } else {
-                    ("accelerometer", "Lay the box down more gently.")
-                };
-                let axis = axis(usize::from(*channel) % 3);
-                write!(f, "The {sensor}'s {axis} axis stood at the end of its range for {samples} samples. {remedy}")
-            }
-            Self::OutOfRange { name, value, limit } => write!(
-                f,
-                "{name} is {value:.4}, beyond the {limit:.4} of a healthy sensor. Check that the box lay flat on every face and \
-                 turned a full 360 degrees; if it stays so, the sensor is damaged."
-            ),
+            Self::Clipped { channel, samples } => clipped(*channel, *samples, f),
+            Self::OutOfRange { .. } | Self::NotObservable { .. } | Self::Uncertain { .. } => parameter(self, f),
             Self::PoorFit { nis_per_dof } => write!(
                 f,
                 "The data do not fit together: residuals are {nis_per_dof:.1} times (squared) what the noise explains. Use a firm \
                  table, let go fully at each rest, keep the box flat in turns, and calibrate again."
-            ),
-            Self::NotObservable { name } => write!(
-                f,
-                "{name} cannot be determined from this session. Turns on the faces of that axis would tell; where only a \
-                 square box can tell, say \"calibrate square\" if yours is."
-            ),
-            Self::Uncertain { name, sigma, limit } => write!(
-                f,
-                "{name} is only known to {sigma:.2e}, and {limit:.2e} is needed. Redo the faces of that axis with turns both ways \
-                 and longer rests."
             ),
             Self::BiasDrift { axis: i, drift_rad_s } => write!(
                 f,
@@ -103,6 +81,38 @@ impl Display for Reason {
             ),
         }
     }
+}
+
+/// What is wrong with one number.
+fn parameter(reason: &Reason, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    match reason {
+        Reason::OutOfRange { name, value, limit } => write!(
+            f,
+            "{name} is {value:.4}, beyond the {limit:.4} of a healthy sensor. Check that the box lay flat on every face and \
+             turned a full 360 degrees; if it stays so, the sensor is damaged."
+        ),
+        Reason::NotObservable { name } => write!(
+            f,
+            "{name} cannot be determined from this session. Turns on the faces of that axis would tell; where only a \
+             square box can tell, say \"calibrate square\" if yours is."
+        ),
+        Reason::Uncertain { name, sigma, limit } => write!(
+            f,
+            "{name} is only known to {sigma:.2e}, and {limit:.2e} is needed. Redo the faces of that axis with turns both ways \
+             and longer rests."
+        ),
+        _ => Ok(()),
+    }
+}
+
+fn clipped(channel: u8, samples: u32, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let (sensor, remedy) = if channel < 3 {
+        ("gyroscope", "Turn more slowly.")
+    } else {
+        ("accelerometer", "Lay the box down more gently.")
+    };
+    let axis = axis(usize::from(channel) % 3);
+    write!(f, "The {sensor}'s {axis} axis stood at the end of its range for {samples} samples. {remedy}")
 }
 
 fn faces_missing(missing: FaceSet, f: &mut fmt::Formatter<'_>) -> fmt::Result {
