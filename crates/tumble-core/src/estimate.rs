@@ -3,6 +3,7 @@
 pub mod device;
 pub mod filter;
 pub mod group;
+pub mod judge;
 pub mod model;
 pub mod noise;
 pub mod start;

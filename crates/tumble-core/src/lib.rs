@@ -24,6 +24,7 @@ pub mod motion;
 pub mod procedure;
 pub mod record;
 pub mod sample;
+pub mod session;
 pub mod tape;
 pub mod verify;
 

@@ -66,8 +66,25 @@ impl Ranges {
 }
 
 impl Counts {
-    /// True if any inertial channel stands at an end of its range, where the value is a bound and not a measurement.
-    pub fn is_clipped(&self) -> bool {
-        self.gyro.iter().chain(&self.accel).any(|&c| c == i16::MAX || c == i16::MIN)
+    /// Channels at an end of their range, where a value is a bound and not a measurement: bits 0–2 gyroscope x–z, 3–5
+    /// accelerometer x–z.
+    pub fn clipped(&self) -> u8 {
+        let ends = |c: i16| u8::from(c == i16::MAX || c == i16::MIN);
+        self.gyro.iter().chain(&self.accel).enumerate().fold(0, |mask, (channel, &c)| mask | ends(c) << channel)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_become_si_and_ends_of_range_are_seen() {
+        let counts = Counts { gyro: [16384, -32768, 0], accel: [2048, 0, 32767], temperature: -7012 };
+        let sample = Ranges::WIDEST.to_si(7, &counts);
+        assert!((sample.angular_rate_rad_s.x - 1000.0 * DEGREE_RAD).abs() < 1e-4);
+        assert!((sample.specific_force_mps2.x - STANDARD_GRAVITY_MPS2).abs() < 1e-5);
+        assert!((sample.temperature_degc - 0.0).abs() < 0.01);
+        assert_eq!(counts.clipped(), 0b10_0010);
     }
 }

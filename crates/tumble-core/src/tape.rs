@@ -1,6 +1,6 @@
 //! The session's memory: decimated sums instead of a raw buffer.
 //!
-//! A record holds the rotation vector and the mean specific force over an interval: 50 ms while it moves, 0.5 s at rest.
+//! A record holds the rotation vector and the mean specific force over an interval: 1/12 s while it moves, 0.5 s at rest.
 //! A simulated 200 s session lost nothing measurable by it (`design.md` §2). A record is 14 bytes; rounding remainders are
 //! carried into the next record, so that sums over a turn stay exact to half a unit: 15 µrad, 2.4 ppm of a revolution.
 
@@ -88,8 +88,8 @@ pub struct Segment {
     pub end_us: u64,
     /// Whether it may be used.
     pub exclusion: Exclusion,
-    /// Samples at an end of a gyroscope range.
-    pub clipped: u16,
+    /// Channels that stood at an end of their range: bits 0–2 gyroscope x–z, 3–5 accelerometer x–z.
+    pub clipped: u8,
 }
 
 impl Segment {
@@ -239,9 +239,13 @@ impl<const R: usize, const S: usize> Tape<R, S> {
         }
     }
 
-    /// Drops the records from `first` on.
-    pub fn truncate(&mut self, first: usize) {
-        self.records.truncate(first);
+    /// Drops all segments and the first `count` records.
+    pub fn drop_front(&mut self, count: usize) {
+        self.segments.clear();
+        let count = count.min(self.records.len());
+        self.records.rotate_left(count);
+        let left = self.records.len() - count;
+        self.records.truncate(left);
     }
 
     /// Closes a segment over the records from `segment.first` to `segment.end`.
@@ -291,7 +295,11 @@ mod tests {
     use super::*;
 
     fn record(rotation: f32) -> Record {
-        Record { dt_s: 0.050_003, rotation_rad: Vector3::repeat(rotation), specific_force_mps2: Vector3::repeat(9.806_65) }
+        Record {
+            dt_s: 0.050_003,
+            rotation_rad: Vector3::repeat(rotation),
+            specific_force_mps2: Vector3::repeat(9.806_65),
+        }
     }
 
     #[test]

@@ -55,11 +55,8 @@ pub struct Conditions {
 
 impl Conditions {
     /// Nothing promised.
-    pub const CAUTIOUS: Self = Self {
-        stops: TurnStops::ByHand,
-        faces: BoxFaces::Unknown,
-        gravity_mps2: crate::STANDARD_GRAVITY_MPS2,
-    };
+    pub const CAUTIOUS: Self =
+        Self { stops: TurnStops::ByHand, faces: BoxFaces::Unknown, gravity_mps2: crate::STANDARD_GRAVITY_MPS2 };
 
     /// The axes that results are given in.
     pub fn frame(&self) -> Frame {
@@ -79,6 +76,8 @@ pub struct Estimate {
     pub covariance: SMatrix<f32, PARAMETERS, PARAMETERS>,
     /// Noise that the session showed.
     pub noise: Noise,
+    /// Moves that were down-weighted: segment, and by what factor of variance. The eight first.
+    pub outliers: heapless::Vec<(u16, f32), 8>,
     /// Passes made.
     pub passes: u32,
     /// False if parameters still moved in the last pass.
@@ -101,6 +100,7 @@ pub struct Estimator<const S: usize> {
 
 /// Where a run stands.
 #[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "no heap to box an estimate into, and there is one at a time")]
 pub enum Progress {
     /// Part of the work done, 0 to 1, if it takes [`MIN_PASSES`].
     Working(f32),
@@ -213,6 +213,12 @@ impl<const S: usize> Estimator<S> {
             },
             covariance,
             noise: self.noise,
+            outliers: (0u16..)
+                .zip(&self.walk.noise)
+                .filter(|(_, noise)| noise.rate_scale > 1.0)
+                .map(|(segment, noise)| (segment, noise.rate_scale))
+                .take(8)
+                .collect(),
             passes: self.passes,
             converged,
         }
@@ -238,7 +244,8 @@ impl<const S: usize> Estimator<S> {
         }
         let sums = self.walk.sums;
         let moves = self.walk.noise.iter().filter(|noise| noise.hinge_nis.is_finite());
-        let (hinge, dof) = moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
+        let (hinge, dof) =
+            moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
         Fit {
             nis_per_dof: (sums.rest.0 + hinge) / (sums.rest.1 + dof).max(1.0),
             gravity_rms_mps2: libm::sqrtf(squares / count.max(1.0)),
@@ -299,8 +306,4 @@ fn is_finite(nominal: &Nominal) -> bool {
     [nominal.gyro, nominal.accel]
         .iter()
         .all(|triad| triad.bias.iter().chain(triad.correction.iter()).all(|value| value.is_finite()))
-}
-impl<const S: usize> Estimator<S> {
-    #[doc(hidden)]
-    pub fn dbg(&self) -> (&Walk<S>, &Noise, u32) { (&self.walk, &self.noise, self.passes) }
 }

@@ -62,12 +62,7 @@ impl Nominal {
             }
         }
         let bias = to_n * self.accel.correction;
-        GravityParts {
-            residual: bias * raw - Vector3::new(0.0, 0.0, gravity),
-            correction,
-            bias,
-            lever: to_n * lever,
-        }
+        GravityParts { residual: bias * raw - Vector3::new(0.0, 0.0, gravity), correction, bias, lever: to_n * lever }
     }
 
     /// Rate at rest, one component in frame b: `M (raw − b) = M δb + Rᵀ Ω` (δM times a rate near zero is left out).
@@ -75,9 +70,11 @@ impl Nominal {
         let residual = self.rotation(record) / record.dt_s;
         core::array::from_fn(|axis| Observation {
             residual: residual[axis],
-            row: Row::new()
-                .with_vector(Block::GyroBias, 0, &self.gyro.correction.row(axis).transpose())
-                .with_vector(Block::Earth, 0, &to_b.row(axis).transpose()),
+            row: Row::new().with_vector(Block::GyroBias, 0, &self.gyro.correction.row(axis).transpose()).with_vector(
+                Block::Earth,
+                0,
+                &to_b.row(axis).transpose(),
+            ),
         })
     }
 }
@@ -146,9 +143,8 @@ impl GravityParts {
 /// `p = (R n)ₓᵧ + (φ × R n)ₓᵧ + (R e)ₓᵧ` as (mean, row) per component; `plane_n` holds the two box axes that e is
 /// measured along.
 pub fn plate(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2]) -> [Observation; 2] {
-    let facet = |row: Row, axis: usize| {
-        row.with(Block::Facet, 0, plane_n[0][axis]).with(Block::Facet, 1, plane_n[1][axis])
-    };
+    let facet =
+        |row: Row, axis: usize| row.with(Block::Facet, 0, plane_n[0][axis]).with(Block::Facet, 1, plane_n[1][axis]);
     let x = Row::new().with(Block::Attitude, 1, normal_n.z).with(Block::Attitude, 2, -normal_n.y);
     let y = Row::new().with(Block::Attitude, 2, normal_n.x).with(Block::Attitude, 0, -normal_n.z);
     [Observation { residual: normal_n.x, row: facet(x, 0) }, Observation { residual: normal_n.y, row: facet(y, 1) }]

@@ -22,7 +22,7 @@ const EARTH_SIGMA: f32 = 5e-5;
 /// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
 const LEVEL_SIGMA: f32 = 0.1;
 /// Records of a turn that make one step of the filter: half a second.
-const GROUP: u16 = 10;
+const GROUP: u16 = 6;
 /// How much noisier than rest a turn is taken for before its innovations are seen.
 const TURN_FORCE_SCALE: f32 = 25.0;
 

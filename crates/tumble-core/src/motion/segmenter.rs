@@ -38,7 +38,7 @@ pub struct Segmenter {
     state: State,
     first: usize,
     start_us: u64,
-    clipped: u16,
+    clipped: u8,
     block_first: usize,
     block_start_us: u64,
     moving_blocks: u32,
@@ -68,12 +68,30 @@ impl Segmenter {
         }
     }
 
-    /// Starts a new tape but keeps what is known of the sensor: its noise floor and resting rate.
-    pub fn restart<const R: usize, const S: usize>(&mut self, tape: &mut Tape<R, S>) {
-        tape.clear();
-        let stillness = self.stillness.clone();
-        *self = Self { stillness, ..Self::new(1.0) };
-        self.stillness.interrupt();
+    /// Ends the still or move in progress and starts another of the same kind: what lies before can be struck out.
+    pub fn cut<const R: usize, const S: usize>(&mut self, tape: &mut Tape<R, S>) {
+        if let State::Still { pending_us, pending_first, .. } = self.state
+            && self.close_still(tape, pending_us).is_ok()
+        {
+            // Two more blocks confirm the new one.
+            self.state = State::Moving { quiet: 1, candidate_first: pending_first, candidate_us: pending_us };
+        }
+        self.visit = RevolutionCheck::default();
+    }
+
+    /// Empties the tape of all but the still or move in progress: nobody is recording.
+    pub fn drop_closed<const R: usize, const S: usize>(&mut self, tape: &mut Tape<R, S>) {
+        let dropped = self.first;
+        if dropped == 0 {
+            return;
+        }
+        tape.drop_front(dropped);
+        self.first = 0;
+        self.block_first -= dropped;
+        match &mut self.state {
+            State::Moving { candidate_first, .. } => *candidate_first = candidate_first.saturating_sub(dropped),
+            State::Still { pending_first, .. } => *pending_first -= dropped,
+        }
     }
 
     /// The resting rate of the last still, rad/s.
@@ -81,11 +99,11 @@ impl Segmenter {
         self.stillness.resting_rate()
     }
 
-    /// Takes one sample. `clipped`: a reading stands at the end of its range.
+    /// Takes one sample. `clipped`: channels at an end of their range, as in [`Segment::clipped`].
     pub fn step<const R: usize, const S: usize>(
         &mut self,
         sample: &Sample,
-        clipped: bool,
+        clipped: u8,
         tape: &mut Tape<R, S>,
     ) -> Events {
         let mut events = Events::new();
@@ -147,7 +165,7 @@ impl Segmenter {
         events: &mut Events,
     ) -> Result<(), Full> {
         let State::Moving { mut quiet, mut candidate_first, mut candidate_us } = self.state else { return Ok(()) };
-        self.clipped = self.clipped.saturating_add(block.clipped);
+        self.clipped |= block.clipped;
         self.moving_blocks += 1;
         if self.moving_blocks.is_multiple_of(2) {
             let _ = events.push(MotionEvent::Moving { excess: excess.of_entering() });
