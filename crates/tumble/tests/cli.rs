@@ -74,14 +74,13 @@ fn refused_inputs_leave_with_1_and_say_why() {
 #[test]
 fn a_recording_that_cannot_be_calibrated_is_rejected_without_numbers() {
     let folder = tempfile::tempdir().expect("a place to write");
-    let still = path(&folder, "still.csv");
-    let mut csv = "t_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g\n".to_owned();
-    for i in 0..2000 {
-        let noise = f64::from((i * 7919) % 13 - 6) * 0.01;
-        csv += &format!("{},{noise},{},0.1,0.001,{},1.0\n", f64::from(i) * 0.005, -noise, noise * 0.01);
-    }
-    std::fs::write(&still, csv).expect("written");
-    let output = tumble(&["calibrate", &still, "--json"]);
+    let (whole, _) = simulated(&folder, &[]);
+    let whole = std::fs::read_to_string(whole).expect("it was written");
+    let part = path(&folder, "part.csv");
+    // Two faces of six: 64 s are enough for both.
+    let two_faces: Vec<&str> = whole.lines().take(64 * 200).collect();
+    std::fs::write(&part, two_faces.join("\n") + "\n").expect("written");
+    let output = tumble(&["calibrate", &part, "--json"]);
     let report: Value = serde_json::from_slice(&output.stdout).expect("one object");
     assert_eq!((status(&output), &report["verdict"]), (1, &Value::from("rejected")), "{report}");
     assert!(report["accelerometer"].is_null() && report["gyroscope"].is_null() && report["covariance"].is_null());

@@ -8,7 +8,7 @@ use tumble_core::sample::Ranges;
 
 use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
-use crate::calibrate::{self, replay};
+use crate::calibrate::{self, Session};
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
 
@@ -56,11 +56,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
 fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal> {
     let inference = Inference::of(recording);
     let readings = readings(arguments, recording, &inference);
-    let conditions = conditions(arguments, recording);
+    let session = Session {
+        readings: &readings,
+        origin_s: recording.origin_s(),
+        lost: inference.missing(),
+        conditions: conditions(arguments, recording),
+    };
     let mut progress = Progress::new();
-    let outcome = replay(&readings, recording.origin_s(), conditions, &mut |share| {
-        progress.share("estimating", share);
-    });
+    let outcome = session.replay(&mut |share| progress.share("estimating", share));
     drop(progress);
     let report = Report::of(&outcome);
     if arguments.json {

@@ -92,7 +92,7 @@ pub struct SegmentReport {
     pub end_s: f64,
     /// The axis that points up, or `other`.
     pub face: String,
-    /// Heading change of a turn, counter-clockwise from above; rotation angle of a move; 0 for a still.
+    /// Heading change of a turn by the raw gyroscope, counter-clockwise from above; 0 for stills and moves.
     pub angle_deg: f32,
     /// Did it enter the estimate?
     pub used: bool,
@@ -116,11 +116,11 @@ pub struct FitReport {
 impl Report {
     /// What a session came to.
     pub fn of(outcome: &Outcome) -> Self {
-        let verdict = outcome.judgement.verdict;
+        let verdict = outcome.verdict;
         let usable = outcome.calibration.as_ref().filter(|_| verdict != Verdict::Rejected);
         Self {
             verdict: verdict_name(verdict).into(),
-            reasons: outcome.judgement.reasons.iter().map(ToString::to_string).collect(),
+            reasons: outcome.reasons.clone(),
             frame: usable.map(|c| frame_name(c.frame).into()),
             accelerometer: usable.map(|c| triad(&c.accelerometer)),
             gyroscope: usable.map(|c| gyroscope(&c.gyroscope)),

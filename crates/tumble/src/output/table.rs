@@ -27,11 +27,11 @@ pub fn recording(recording: &Recording, inference: &Inference) -> String {
         let _ = writeln!(text, "note: {notice}");
     }
     if let Some(longest) = inference.gaps.iter().max_by(|a, b| a.length_s.total_cmp(&b.length_s)) {
-        let missing: u64 = inference.gaps.iter().map(|gap| gap.missing).sum();
         let _ = writeln!(
             text,
-            "note: {} gaps, {missing} samples missing; the longest, {:.3} s, at {:.3} s",
+            "note: {} gaps, {} samples missing; the longest, {:.3} s, at {:.3} s",
             inference.gaps.len(),
+            inference.missing(),
             longest.length_s,
             longest.start_s
         );

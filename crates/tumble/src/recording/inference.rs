@@ -73,9 +73,15 @@ impl Inference {
         Self { gyro_range_dps, accel_range_g, rate_hz: rate(rows, spacing_s), gaps: gaps(rows, spacing_s), clipped }
     }
 
-    /// Does any channel of this row stand at an end of its range?
-    pub fn is_clipped(&self, row: &Row) -> bool {
-        row.channels().iter().zip(&self.clipped).any(|(value, limits)| limits.contain(*value))
+    /// Channels of this row at an end of their range: bits 0–2 gyroscope x–z, 3–5 accelerometer x–z.
+    pub fn clipped(&self, row: &Row) -> u8 {
+        let ends = row.channels().into_iter().zip(&self.clipped).map(|(value, limits)| limits.contain(value));
+        ends.enumerate().fold(0, |mask, (channel, end)| mask | u8::from(end) << channel)
+    }
+
+    /// Samples that never came, over all gaps.
+    pub fn missing(&self) -> u32 {
+        u32::try_from(self.gaps.iter().map(|gap| gap.missing).sum::<u64>()).unwrap_or(u32::MAX)
     }
 
     /// How many rows each channel is clipped in.

@@ -48,8 +48,9 @@ impl Row {
 pub struct Reading {
     /// SI, `f32`.
     pub sample: Sample,
-    /// True if a channel stands at the end of its range, where the value is a bound and not a measurement.
-    pub clipped: bool,
+    /// Channels at an end of their range, where a value is a bound and not a measurement; bits as in
+    /// [`Counts::clipped`].
+    pub clipped: u8,
 }
 
 /// A recording that passed every check.
@@ -74,10 +75,7 @@ impl Recording {
     /// a count at full scale).
     pub fn samples(&self, inference: &Inference) -> Vec<Reading> {
         let origin_s = self.origin_s();
-        self.rows
-            .iter()
-            .map(|row| Reading { sample: to_si(row, origin_s), clipped: inference.is_clipped(row) })
-            .collect()
+        self.rows.iter().map(|row| Reading { sample: to_si(row, origin_s), clipped: inference.clipped(row) }).collect()
     }
 }
 
@@ -107,5 +105,5 @@ pub fn as_board_reads(reading: &Reading, ranges: &Ranges) -> Reading {
     };
     let board = ranges.to_si(sample.t_us, &counts);
     let temperature_degc = if sample.temperature_degc.is_nan() { f32::NAN } else { board.temperature_degc };
-    Reading { sample: Sample { temperature_degc, ..board }, clipped: reading.clipped || counts.is_clipped() }
+    Reading { sample: Sample { temperature_degc, ..board }, clipped: reading.clipped | counts.clipped() }
 }
