@@ -21,6 +21,13 @@ enum Reference {
     Gravity,
 }
 
+/// What computes the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum EstimatorWord {
+    /// The board's own, in its own arithmetic
+    Device,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Recording to calibrate from
@@ -29,6 +36,9 @@ pub(super) struct Arguments {
     /// Print the contract's JSON object instead of a table
     #[arg(long)]
     json: bool,
+    /// What computes the numbers
+    #[arg(long, value_enum, default_value_t = EstimatorWord::Device)]
+    estimator: EstimatorWord,
     /// What defines the axes, instead of what the recording states of its box
     #[arg(long, value_enum)]
     reference: Option<Reference>,
@@ -63,7 +73,9 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         conditions: conditions(arguments, recording),
     };
     let mut progress = Progress::new();
-    let outcome = session.replay(&mut |share| progress.share("estimating", share));
+    let outcome = match arguments.estimator {
+        EstimatorWord::Device => session.replay(&mut |share| progress.share("estimating", share)),
+    };
     drop(progress);
     let report = Report::of(&outcome);
     if arguments.json {
