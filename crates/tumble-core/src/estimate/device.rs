@@ -11,6 +11,7 @@ use super::model::Nominal;
 use super::noise::Noise;
 use super::start;
 use super::state::Block;
+use super::sums::{Excess, SegmentNoise};
 use super::walk::Walk;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
@@ -23,6 +24,8 @@ pub const CORRECTION_SIGMA: f32 = 0.06;
 const ACCEL_BIAS_SIGMA: f32 = 0.8;
 /// Prior of a gyroscope bias about the mean of all rests, rad/s: far wider than what rests leave (0.1 mrad/s).
 const GYRO_BIAS_SIGMA: f32 = 0.01;
+/// Prior of the lever arm, m: a sensor sits in a box of some 10 cm.
+const LEVER_SIGMA_M: f32 = 0.05;
 /// A number is "not observable" where the data bring less than 99 % of what is known of it.
 const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
 /// At least this many passes: three to come near, three to settle the noise, one to confirm.
@@ -34,6 +37,8 @@ const CONVERGED: f32 = 0.05;
 /// Passes before noise is judged by residuals, and passes that judge it: then it stands, so that the last converge.
 const SETTLED: u32 = 3;
 const ADAPTING: u32 = 3;
+/// Upper 1 % point of the normal distribution.
+const SIGNIFICANT: f32 = 2.326;
 /// Width of a narrowed prior in sigmas, and the least sigma (1 or SI) that is believed of an early pass.
 const NARROWED: f32 = 30.0;
 const NARROWEST: f32 = 2e-5;
@@ -145,6 +150,11 @@ impl<const S: usize> Estimator<S> {
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
     }
 
+    /// What the passes so far say of each segment.
+    pub fn segment_noise(&self) -> &[SegmentNoise] {
+        &self.walk.noise
+    }
+
     /// The largest step of this pass over its sigma.
     fn largest_move(&self) -> f32 {
         let (state, covariance) = (self.walk.filter.state(), self.walk.filter.covariance());
@@ -161,13 +171,16 @@ impl<const S: usize> Estimator<S> {
             return;
         }
         let sums = self.walk.sums;
-        if let Some(excess) = sums.rate_walk.value() {
+        if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
         }
-        if let Some(excess) = sums.force_walk.value() {
+        if let Some(excess) = walk_excess(&sums.force_walk, self.noise.has_force_walk()) {
             self.noise.set_force_walk(self.noise.force_walk + excess);
         }
-        if let Some(excess) = sums.stop.value() {
+        if let Some((excess, _)) = sums.pivot.value() {
+            self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
+        }
+        if let Some((excess, _)) = sums.stop.value() {
             let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
             self.noise.set_stop_variance(variance + excess, self.conditions.stops);
         }
@@ -183,7 +196,13 @@ impl<const S: usize> Estimator<S> {
         if hinges.len() < MIN_HINGES {
             return;
         }
-        let excess = (hinges[hinges.len() / 2] / 1.386).max(1.0 / self.noise.motion_scale);
+        let median = hinges[hinges.len() / 2];
+        // A median's standard error is 1/(2 f √n), and the density f of χ²₂ at its median is 1/4.
+        let certain = median > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
+        let excess = match self.noise.motion_scale > 1.0 || certain {
+            true => (median / 1.386).max(1.0 / self.noise.motion_scale),
+            false => 1.0,
+        };
         self.noise.motion_scale *= excess;
         for noise in &mut self.walk.noise {
             let nis = noise.hinge_nis / excess;
@@ -255,6 +274,13 @@ impl<const S: usize> Estimator<S> {
     }
 }
 
+/// How much more a bias wanders than it is taken to. A walk is not believed in before it is certain (99 %): to believe in
+/// one that is not there costs the accelerometer a factor of four.
+fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
+    let (value, sigma) = excess.value()?;
+    (believed || value > SIGNIFICANT * sigma).then_some(value)
+}
+
 /// The prior about a nominal: its mean stays at the start, whatever the nominal has become.
 fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Filter {
     let mut filter = Filter::default();
@@ -273,6 +299,7 @@ fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Filter 
     for axis in 0..3 {
         filter.reset(Block::GyroBias, axis, start.gyro.bias[axis] - nominal.gyro.bias[axis], GYRO_BIAS_SIGMA);
         filter.reset(Block::AccelBias, axis, start.accel.bias[axis] - nominal.accel.bias[axis], ACCEL_BIAS_SIGMA);
+        filter.reset(Block::Lever, axis, 0.0, LEVER_SIGMA_M);
     }
     filter
 }
@@ -299,6 +326,7 @@ fn improved(nominal: &Nominal, filter: &Filter) -> Nominal {
     Nominal {
         gyro: triad(&nominal.gyro, Block::GyroCorrection, Block::GyroBias),
         accel: triad(&nominal.accel, Block::AccelCorrection, Block::AccelBias),
+        earth_rad_s: nominal.earth_rad_s + filter.vector(Block::Earth, 0),
     }
 }
 

@@ -14,6 +14,8 @@ pub struct Nominal {
     pub gyro: Triad,
     /// Accelerometer, m/s².
     pub accel: Triad,
+    /// Earth's rotation, rad/s, frame n with the heading of the first still.
+    pub earth_rad_s: Vector3<f32>,
 }
 
 /// A residual and the row that explains it: `residual = row · state + noise`.
@@ -65,9 +67,10 @@ impl Nominal {
         GravityParts { residual: bias * raw - Vector3::new(0.0, 0.0, gravity), correction, bias, lever: to_n * lever }
     }
 
-    /// Rate at rest, one component in frame b: `M (raw − b) = M δb + Rᵀ Ω` (δM times a rate near zero is left out).
+    /// Rate at rest, one component in frame b: `M (raw − b) − Rᵀ Ω₀ = M δb + Rᵀ δΩ` (δM times a rate near zero is left
+    /// out).
     pub fn rest_rate(&self, record: &Record, to_b: &Matrix3<f32>) -> [Observation; 3] {
-        let residual = self.rotation(record) / record.dt_s;
+        let residual = self.rotation(record) / record.dt_s - to_b * self.earth_rad_s;
         core::array::from_fn(|axis| Observation {
             residual: residual[axis],
             row: Row::new().with_vector(Block::GyroBias, 0, &self.gyro.correction.row(axis).transpose()).with_vector(
@@ -133,7 +136,8 @@ impl GravityParts {
             }
         }
         if since.is_some() {
-            row = row.with_vector(Block::Lever, 0, &self.lever.row(axis).transpose());
+            let lever = self.lever.row(axis).transpose();
+            row = row.with_vector(Block::Lever, 0, &lever).with_vector(Block::Pivot, 0, &lever);
         }
         Observation { residual: self.residual[axis], row }
     }

@@ -19,6 +19,11 @@ const BY_HAND_FLOOR: f32 = 0.25 * DEGREE_RAD;
 const FENCED: f32 = 0.05 * DEGREE_RAD;
 /// A face of a box that its owner calls square, rad: 1 µm on 5 cm.
 const SQUARE: f32 = 20e-6;
+/// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least and most
+/// that is believed of it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
+const PIVOT: f32 = 5e-3;
+const PIVOT_FLOOR: f32 = 50e-6;
+const PIVOT_CAP: f32 = 0.05;
 /// A bias wanders at least 1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 const WALK_FLOOR: f32 = 1e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
@@ -41,6 +46,8 @@ pub struct Noise {
     pub motion_scale: f32,
     /// One stop of a turn, rad.
     pub stop_sigma_rad: f32,
+    /// How far a turn's axis is from where it is in other turns, m.
+    pub pivot_sigma_m: f32,
     /// One face of the box, rad; none where it is not known to be square.
     pub facet_sigma_rad: Option<f32>,
     /// Rates' sample variance of the quietest rest, (rad/s)².
@@ -76,6 +83,7 @@ impl Noise {
             force_walk: FORCE_WALK_FLOOR,
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
+            pivot_sigma_m: PIVOT,
             facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
             quiet_variance,
         }
@@ -86,9 +94,24 @@ impl Noise {
         self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
     }
 
+    /// Has the bias been seen to wander?
+    pub fn has_bias_walk(&self) -> bool {
+        self.bias_walk > WALK_FLOOR
+    }
+
+    /// Has the accelerometer's?
+    pub fn has_force_walk(&self) -> bool {
+        self.force_walk > FORCE_WALK_FLOOR
+    }
+
     /// Likewise for the accelerometer.
     pub fn set_force_walk(&mut self, found: f32) {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
+    }
+
+    /// Pivot variance from what turns estimated of it, m².
+    pub fn set_pivot_variance(&mut self, found: f32) {
+        self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
     /// Stop variance from the closures' innovations.

@@ -13,6 +13,7 @@ pub fn nominal<const R: usize, const S: usize>(tape: &Tape<R, S>, gravity: f32) 
     let bias = resting_rate(tape);
     Nominal {
         accel: accelerometer(tape, gravity),
+        earth_rad_s: Vector3::zeros(),
         gyro: Triad { bias, correction: Matrix3::from_diagonal(&turn_scales(tape)) },
     }
 }

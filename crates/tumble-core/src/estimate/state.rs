@@ -7,7 +7,8 @@
 //! | gyro bias δb | 3 | rad/s | sensor axes, a random walk |
 //! | accelerometer correction δA | 9 | 1 | row by row, `f = (A + δA)(raw − a − δa)` |
 //! | accelerometer bias δa | 3 | m/s² | sensor axes |
-//! | lever l | 3 | m | from the turn's axis to the sensor, frame b; anew for every turn |
+//! | lever l | 3 | m | from the turns' common axis to the sensor, frame b |
+//! | pivot | 3 | m | how far a turn's own axis is from the common one, frame b; anew for every turn |
 //! | table p | 2 | 1 | horizontal components of the table's normal, frame n |
 //! | Earth Ω | 3 | rad/s | Earth's rotation, frame n, whose heading is that of the first still |
 //! | fence h | 1 | rad | heading error at the first stop of a visit, less that stop's own error |
@@ -17,7 +18,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 /// All of it.
-pub const STATES: usize = 38;
+pub const STATES: usize = 41;
 
 /// A run of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,6 +35,8 @@ pub enum Block {
     AccelBias,
     /// l.
     Lever,
+    /// Its deviation in this turn.
+    Pivot,
     /// p.
     Table,
     /// Ω.
@@ -54,10 +57,11 @@ impl Block {
             Self::AccelCorrection => 15,
             Self::AccelBias => 24,
             Self::Lever => 27,
-            Self::Table => 30,
-            Self::Earth => 32,
-            Self::Fence => 35,
-            Self::Facet => 36,
+            Self::Pivot => 30,
+            Self::Table => 33,
+            Self::Earth => 35,
+            Self::Fence => 38,
+            Self::Facet => 39,
         }
     }
 
@@ -80,7 +84,7 @@ impl Block {
 /// A row of the observation matrix with its zeros left out.
 #[derive(Clone, Debug, Default)]
 pub struct Row {
-    entries: Vec<(u8, f32), 32>,
+    entries: Vec<(u8, f32), 36>,
 }
 
 impl Row {
@@ -91,7 +95,7 @@ impl Row {
 
     /// Sets one coefficient: `offset` counts within the block.
     pub fn with(mut self, block: Block, offset: usize, value: f32) -> Self {
-        // No observation of this model has more than 31 coefficients.
+        // No observation of this model has more than 34 coefficients.
         let _ = self.entries.push(((block.start() + offset) as u8, value));
         self
     }

@@ -25,6 +25,8 @@ pub struct Sums {
     pub rate_walk: Excess,
     /// Closures: a stop's variance.
     pub stop: Excess,
+    /// Turns: the pivot's variance.
+    pub pivot: Excess,
     /// Plates: a face's variance.
     pub facet: Excess,
     /// Closure residuals, rad² and count.
@@ -47,8 +49,8 @@ impl Excess {
         self.denominator += weight * coefficient;
     }
 
-    /// What q would have to grow by; none without data.
-    pub fn value(&self) -> Option<f32> {
-        (self.denominator > 0.0).then(|| self.numerator / self.denominator)
+    /// What q would have to grow by, and one sigma of that (ν² has variance 2 S²); none without data.
+    pub fn value(&self) -> Option<(f32, f32)> {
+        (self.denominator > 0.0).then(|| (self.numerator / self.denominator, libm::sqrtf(2.0 / self.denominator)))
     }
 }

@@ -3,7 +3,7 @@
 use heapless::Vec;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::filter::Filter;
+use super::filter::{Filter, Innovation};
 use super::group::{Group, TurnNoise};
 use super::model::{self, Nominal, Observation};
 use super::noise::{self, Noise};
@@ -13,8 +13,6 @@ use crate::face::Face;
 use crate::motion::path::WHOLE_TURN;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
 
-/// Prior of a turn's lever arm, m: a sensor sits in a box of some 10 cm.
-const LEVER_SIGMA_M: f32 = 0.05;
 /// How well a face's contact with the table repeats, rad: 1 µm over 5 cm.
 const CONTACT_SIGMA: f32 = 20e-6;
 /// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
@@ -42,6 +40,7 @@ pub struct Walk<const S: usize> {
     attitude: UnitQuaternion<f32>,
     aligned: bool,
     table_known: bool,
+    chains: u16,
     visit: Option<Visit>,
     group: Group,
     turn_noise: TurnNoise,
@@ -75,6 +74,7 @@ impl<const S: usize> Walk<S> {
             attitude: UnitQuaternion::identity(),
             aligned: false,
             table_known: false,
+            chains: 0,
             visit: None,
             group: Group::default(),
             turn_noise: TurnNoise::default(),
@@ -137,7 +137,7 @@ impl<const S: usize> Walk<S> {
         }
         self.hinge = self.aligned.then_some(self.segment);
         if matches!(segment.kind, Kind::OnTable { .. }) {
-            (0..3).for_each(|axis| self.filter.reset(Block::Lever, axis, 0.0, LEVER_SIGMA_M));
+            (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
         } else {
             self.visit = None;
         }
@@ -198,7 +198,14 @@ impl<const S: usize> Walk<S> {
         self.filter.reset(Block::Attitude, 1, 0.0, LEVEL_SIGMA);
         self.filter.reset(Block::Attitude, 2, 0.0, 0.0);
         self.table_known = false;
-        (0..3).for_each(|axis| self.filter.reset(Block::Earth, axis, 0.0, EARTH_SIGMA));
+        self.chains += 1;
+        if self.chains > 1 {
+            // The first still's heading is lost, and with it where the Earth's rotation points.
+            self.nominal.earth_rad_s = Vector3::zeros();
+        }
+        for axis in 0..3 {
+            self.filter.reset(Block::Earth, axis, -self.nominal.earth_rad_s[axis], EARTH_SIGMA);
+        }
         self.filter.reset(Block::Fence, 0, 0.0, 0.0);
     }
 
@@ -283,7 +290,8 @@ impl<const S: usize> Walk<S> {
         let to_n = middle.to_rotation_matrix().into_inner();
         let gravity = lever.map(|lever| self.nominal.gravity(record, &to_n, self.gravity, lever));
         self.group.take(&self.nominal.drive(record, &to_n), gravity.as_ref(), record.dt_s);
-        let next = self.attitude * UnitQuaternion::from_scaled_axis(rotation);
+        let earth = UnitQuaternion::from_scaled_axis(self.nominal.earth_rad_s * -record.dt_s);
+        let next = earth * self.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.attitude = UnitQuaternion::new_normalize(next.into_inner());
     }
 
@@ -359,12 +367,26 @@ impl<const S: usize> Walk<S> {
         if let Kind::OnTable { angle_rad, .. } = segment.kind
             && segment.exclusion == Exclusion::None
         {
+            self.learn_pivot(noise);
             if let Some(factor) = self.turn_noise.factor() {
                 let scale = &mut self.noise[self.segment].force_scale;
                 *scale = (*scale * factor).clamp(1.0, 1e6);
             }
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
+            }
+        }
+    }
+
+    /// A pivot's estimate has variance `σ² − P` if pivots have variance σ², P being what is left of it.
+    fn learn_pivot(&mut self, noise: &Noise) {
+        let prior = noise.pivot_sigma_m * noise.pivot_sigma_m;
+        for index in Block::Pivot.range() {
+            let expected = prior - self.filter.covariance()[(index, index)];
+            // A component along the axis learns nothing, and nothing is learnt from it.
+            if expected > 0.1 * prior {
+                let innovation = Innovation { value: self.filter.state()[index], variance: expected };
+                self.sums.pivot.take(&innovation, expected / prior);
             }
         }
     }

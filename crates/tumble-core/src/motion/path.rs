@@ -76,7 +76,9 @@ impl RevolutionCheck {
         if libm::fabsf(angle_rad) < 2.0 * WHOLE_TURN {
             return None;
         }
-        let total = self.since_closed_rad;
+        // A whole turn counts whatever was left open before it.
+        let whole = |angle: f32| whole_turns(angle).is_some_and(|turns| turns != 0);
+        let total = if whole(angle_rad) { angle_rad } else { self.since_closed_rad };
         match whole_turns(total) {
             Some(turns) if turns != 0 => {
                 self.since_closed_rad = 0.0;
