@@ -75,7 +75,7 @@ impl Sampling {
         };
         SENSOR_STARTS.add(1);
         tell(SensorEvent::Started(identity)).await;
-        let (mut errors, mut stale) = (0, 0);
+        let (mut errors, mut stale, mut told) = (0, 0, false);
         loop {
             SAMPLING_ALIVE.show();
             let ready = select(self.data_ready.wait_for_high(), SENSOR_REQUEST.wait());
@@ -88,6 +88,7 @@ impl Sampling {
                         Ok(reading) if reading.status.is_fresh() => {
                             (errors, stale) = (0, 0);
                             self.queue(t_us, &reading);
+                            told = told || SENSOR_EVENTS.try_send(SensorEvent::Running).is_ok();
                         }
                         Ok(_) => {
                             stale += 1;

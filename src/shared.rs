@@ -22,8 +22,10 @@ pub struct Stamped {
 
 /// What happens to the sensor.
 pub enum SensorEvent {
-    /// It has started, or started again.
+    /// It answers and is set up; whether it samples is not known yet.
     Started(Identity),
+    /// The first reading since has come.
+    Running,
     /// It does not run. Told once, and again every few seconds while it lasts.
     Failed(Fault),
     /// The answer to [`SensorRequest::SelfTest`].

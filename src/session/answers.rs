@@ -2,7 +2,7 @@
 
 use embassy_time::Instant;
 use tumble_core::command::{CalAction, Command, StreamKind, WORDS};
-use tumble_core::message::{Hello, Info, Message, Recording, Streaming, Trouble};
+use tumble_core::message::{Hello, Info, Message, Recording, Streaming, Task, Trouble};
 
 use super::{Desk, RANGES};
 use crate::board;
@@ -47,11 +47,11 @@ impl Desk {
         }
     }
 
-    async fn info(&mut self) {
+    pub(super) async fn info(&mut self) {
         let info = Info {
             hello: self.about(),
             ranges: RANGES,
-            rate_hz: self.stream.rate_hz(),
+            rate_hz: self.stream.measured_rate_hz().unwrap_or(0.0),
             samples: SAMPLES_TAKEN.get(),
             overruns: OVERRUNS.get(),
             sample_errors: SAMPLE_ERRORS.get(),
@@ -75,7 +75,9 @@ impl Desk {
 
     async fn cal(&mut self, action: CalAction) {
         if action == CalAction::Reset {
+            self.voice.say(&Message::Busy { task: Task::Store, percent: 0 }).await;
             let erased = self.keeper.forget().await.map_or_else(Message::Error, |()| Message::Erased);
+            self.put_in_force();
             self.voice.say(&erased).await;
         } else {
             let Some(record) = self.keeper.in_force().copied() else {
@@ -123,9 +125,13 @@ impl Desk {
     }
 
     async fn start_self_test(&mut self) {
-        match &self.trouble {
-            Some(trouble) => self.voice.say(&Message::Error(trouble.clone())).await,
-            None => SENSOR_REQUEST.signal(SensorRequest::SelfTest),
+        if let Some(trouble) = &self.trouble {
+            self.voice.say(&Message::Error(trouble.clone())).await;
+        } else if self.is_in_session() {
+            let why = "It would shake the session's data. Type \"cancel\" first, or wait until it is done.";
+            self.voice.say(&Message::Error(Trouble::NotNow { command: Command::SelfTest, why })).await;
+        } else {
+            SENSOR_REQUEST.signal(SensorRequest::SelfTest);
         }
     }
 }

@@ -14,21 +14,29 @@ use embassy_futures::yield_now;
 use embassy_time::{Duration, Instant, Ticker};
 use mpu9250_spi::{Identity, SelfTest, Standing};
 use tumble_core::command::{Command, CommandError};
-use tumble_core::message::{Message, Trouble};
-use tumble_core::procedure::{Procedure, Setup};
+use tumble_core::message::{Message, Task, Trouble};
+use tumble_core::procedure::{Phase, Procedure, Setup};
+use tumble_core::record::Origin;
 use tumble_core::sample::Ranges;
+use tumble_core::session::{Effect, Session};
 
 use crate::board::ParameterFlash;
 use crate::console;
 use crate::fault::Fault;
 use crate::shared::{SAMPLES, SENSOR_EVENTS, SESSION_ALIVE, SensorEvent, Stamped};
-use keeper::Keeper;
+use keeper::{Keeper, firmware_version};
 use lamp::Lamp;
+use static_cell::StaticCell;
 use stream::Stream;
 use voice::Voice;
 
 /// What the sensor is set to.
 const RANGES: Ranges = Ranges::WIDEST;
+
+/// Records of 14 bytes: 12 a second while it moves, 2 at rest. A double scheme by a slow hand takes 2000.
+const RECORDS: usize = 1500;
+/// Rests, turns and moves. A double scheme without a mistake has 40.
+const SEGMENTS: usize = 160;
 
 /// What can happen to the session.
 enum Input {
@@ -55,10 +63,13 @@ struct Desk {
     /// As last stated with `calibrate`.
     setup: Setup,
     last_seq: Option<u32>,
+    session: &'static mut Session<RECORDS, SEGMENTS>,
 }
 
 /// The task's body. Never ends.
 pub async fn run(flash: ParameterFlash, reset_cause: &'static str) -> ! {
+    /// Half of the memory, so not on the stack.
+    static SESSION: StaticCell<Session<RECORDS, SEGMENTS>> = StaticCell::new();
     let mut desk = Desk {
         voice: Voice::default(),
         keeper: Keeper::new(flash),
@@ -70,14 +81,15 @@ pub async fn run(flash: ParameterFlash, reset_cause: &'static str) -> ! {
         said_hello: false,
         setup: Setup::default(),
         last_seq: None,
+        session: SESSION.init_with(Session::new),
     };
-    let unreadable = desk.keeper.load().await.err();
+    let mut unreadable = desk.keeper.load().await.err().map(Message::Error);
+    desk.put_in_force();
     let mut second = Ticker::every(Duration::from_secs(1));
-    let mut unreadable = unreadable.map(Message::Error);
     loop {
         SESSION_ALIVE.show();
-        match next(&mut second, desk.is_computing()).await {
-            Input::Sample(sample) => desk.sample(&sample).await,
+        match next(&mut second, desk.session.is_computing()).await {
+            Input::Sample(sample) => desk.sample(&sample),
             Input::Line(line) => desk.line(line).await,
             Input::Sensor(event) => {
                 desk.sensor(event).await;
@@ -85,9 +97,10 @@ pub async fn run(flash: ParameterFlash, reset_cause: &'static str) -> ! {
                     desk.voice.say(&message).await;
                 }
             }
-            Input::Second => desk.second().await,
-            Input::Idle => desk.work().await,
+            Input::Second => desk.session.second(now_us()),
+            Input::Idle => desk.session.work(now_us()),
         }
+        desk.carry_out().await;
     }
 }
 
@@ -111,12 +124,15 @@ async fn next(second: &mut Ticker, computing: bool) -> Input {
 }
 
 impl Desk {
-    async fn sample(&mut self, stamped: &Stamped) {
+    fn sample(&mut self, stamped: &Stamped) {
         let lost = self.last_seq.map_or(0, |last| stamped.seq.wrapping_sub(last).wrapping_sub(1));
         self.last_seq = Some(stamped.seq);
         let sample = RANGES.to_si(stamped.t_us, &stamped.counts);
         self.stream.sample(stamped, &sample, self.keeper.in_force());
-        let _ = (lost, sample);
+        if lost > 0 {
+            self.session.lost(lost);
+        }
+        self.session.sample(&sample, stamped.counts.clipped());
     }
 
     async fn line(&mut self, line: Result<Command, CommandError>) {
@@ -134,17 +150,66 @@ impl Desk {
         if let Command::Calibrate(setup) = command {
             self.setup = setup;
         }
+        self.session.command(now_us(), command);
+    }
+
+    /// What the session asks for, which may lead to more.
+    async fn carry_out(&mut self) {
+        while let Some(effect) = self.session.next_effect() {
+            match effect {
+                Effect::Say(message) => self.voice.say(&message).await,
+                Effect::Remind(message) => self.voice.remind(&message).await,
+                Effect::Led(pattern) => self.lamp.session(pattern),
+                Effect::SayParameters => {
+                    if let Some(calibration) = self.session.estimated() {
+                        for parameter in calibration.parameters() {
+                            self.voice.say(&Message::Param(parameter)).await;
+                        }
+                    }
+                }
+                Effect::Store => self.store().await,
+            }
+        }
+    }
+
+    async fn store(&mut self) {
+        // The session asks for it right after it accepted one.
+        let Some(accepted) = self.session.accepted().copied() else { return };
+        self.voice.say(&Message::Busy { task: Task::Store, percent: 0 }).await;
+        let origin = Origin {
+            generation: 0,
+            firmware: firmware_version(),
+            whoami: self.identity.map_or(0, |identity| identity.who_am_i),
+            ranges: RANGES,
+            setup: self.setup,
+        };
+        let result = self.keeper.store(origin, &accepted).await;
+        self.session.stored(now_us(), result);
+    }
+
+    /// Tells the session what compensates from now on.
+    fn put_in_force(&mut self) {
+        let record = self.keeper.in_force();
+        self.session.set_in_force(now_us(), record.map(|record| record.calibration.calibration()));
+    }
+
+    fn is_in_session(&self) -> bool {
+        self.session.phase() != Phase::Idle
     }
 
     async fn sensor(&mut self, event: SensorEvent) {
         match event {
             SensorEvent::Started(identity) => {
                 self.identity = Some(identity);
-                self.trouble = None;
-                self.lamp.well();
                 self.hello().await;
                 if identity.standing() == Standing::Relative {
                     defmt::warn!("identity {=u8:#x} is a relative of the MPU9250", identity.who_am_i);
+                }
+            }
+            SensorEvent::Running => {
+                self.lamp.well();
+                if self.trouble.take().is_some() {
+                    self.info().await;
                 }
             }
             SensorEvent::Failed(fault) => {
@@ -177,14 +242,8 @@ impl Desk {
         }
         self.voice.say(&Message::Ok(Command::SelfTest)).await;
     }
+}
 
-    async fn second(&mut self) {
-        let _ = Instant::now();
-    }
-
-    fn is_computing(&self) -> bool {
-        false
-    }
-
-    async fn work(&mut self) {}
+fn now_us() -> u64 {
+    Instant::now().as_micros()
 }

@@ -46,13 +46,15 @@ impl Stream {
         self.run = None;
     }
 
-    /// By the crystal, over the present run; the nominal rate where there is none yet.
+    /// By the crystal, over the present run; none before there is one.
+    pub fn measured_rate_hz(&self) -> Option<f32> {
+        let [(first, from_us), (last, to_us)] = self.run?;
+        (to_us > from_us).then(|| last.wrapping_sub(first) as f32 / ((to_us - from_us) as f32 * 1e-6))
+    }
+
+    /// As measured, or as set.
     pub fn rate_hz(&self) -> f32 {
-        let Some([(first, from_us), (last, to_us)]) = self.run else { return NOMINAL_RATE_HZ };
-        if to_us <= from_us {
-            return NOMINAL_RATE_HZ;
-        }
-        last.wrapping_sub(first) as f32 / ((to_us - from_us) as f32 * 1e-6)
+        self.measured_rate_hz().unwrap_or(NOMINAL_RATE_HZ)
     }
 }
 

@@ -139,7 +139,7 @@ fn a_second_cut_during_the_repair_loses_nothing_either() {
     let mut seconds = 0;
     let mut whole = open(flash.clone().power_on());
     block_on(whole.save(&new)).expect("saves");
-    for at in (0..whole.release().operations) {
+    for at in 0..whole.release().operations {
         for torn in ALL_TORN {
             let mut first = flash.clone().power_on();
             first.cut = Some((at, torn));
