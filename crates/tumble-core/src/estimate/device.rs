@@ -180,9 +180,9 @@ impl<const S: usize> Estimator<S> {
         if let Some((excess, _)) = sums.pivot.value() {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
-        if let Some((excess, _)) = sums.stop.value() {
+        if let Some((excess, sigma)) = sums.stop.value() {
             let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
-            self.noise.set_stop_variance(variance + excess, self.conditions.stops);
+            self.noise.set_stop_variance(variance + excess, sigma, self.conditions.stops);
         }
         self.scale_motion();
     }

@@ -1,6 +1,6 @@
 //! The physics: nominal parameters, and the observation rows that follow from them. Derivations: `docs/method.md`.
 
-use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 
 use super::filter::AttitudeDrive;
 use super::state::{Block, Row};
@@ -154,6 +154,14 @@ pub fn plate(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2]) -> [Observati
     [Observation { residual: normal_n.x, row: facet(x, 0) }, Observation { residual: normal_n.y, row: facet(y, 1) }]
 }
 
+/// The shortest rotation that takes `up` to z. The half-angle form keeps small angles to `f32`'s last digit, where an
+/// arc cosine of the dot product would round them to 0.3 mrad. Straight down has no shortest way: half a turn about x.
+pub fn levelling(up: &Vector3<f32>) -> UnitQuaternion<f32> {
+    let half = Quaternion::new(up.norm() + up.z, up.y, -up.x, 0.0);
+    let half_turn = UnitQuaternion::new_unchecked(Quaternion::new(0.0, 1.0, 0.0, 0.0));
+    UnitQuaternion::try_new(half, 1e-6 * up.norm()).unwrap_or(half_turn)
+}
+
 /// Heading error about the table's normal, `φ · n`, as a row.
 pub fn heading(normal_n: &Vector3<f32>) -> Row {
     Row::new().with_vector(Block::Attitude, 0, normal_n)
@@ -170,4 +178,20 @@ pub fn fence(now: &UnitQuaternion<f32>, first: &UnitQuaternion<f32>, normal_n: &
 pub fn lever(rate: &Vector3<f32>, acceleration: &Vector3<f32>) -> Matrix3<f32> {
     let w = cross_matrix(rate);
     w * w + cross_matrix(acceleration)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levelling_is_exact_for_tiny_tilts_and_whole_for_upside_down() {
+        let tilt = 1e-5;
+        let turn = levelling(&(Vector3::new(tilt, -2.0 * tilt, 1.0) * 9.8));
+        let expected = Vector3::new(-2.0 * tilt, -tilt, 0.0);
+        assert!((turn.scaled_axis() - expected).norm() < 1e-11, "{}", turn.scaled_axis());
+        assert!((levelling(&-Vector3::z()) * -Vector3::z() - Vector3::z()).norm() < 1e-6);
+        let oblique = Vector3::new(3.0, -4.0, 1.0);
+        assert!((levelling(&oblique) * oblique - Vector3::z() * oblique.norm()).norm() < 1e-5);
+    }
 }

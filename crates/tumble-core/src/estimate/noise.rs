@@ -15,6 +15,8 @@ const FENCE_FLOOR: f32 = 0.005 * DEGREE_RAD;
 /// A person who stops by eye: 2° (sim, `design.md` §2), never believed better than a quarter of a degree.
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
 const BY_HAND_FLOOR: f32 = 0.25 * DEGREE_RAD;
+/// How many stops the expectation is worth.
+const STOPS_EXPECTED: f32 = 6.0;
 /// What a stop against a fence is taken for before its innovations are seen.
 const FENCED: f32 = 0.05 * DEGREE_RAD;
 /// A face of a box that its owner calls square, rad: 1 µm on 5 cm.
@@ -114,13 +116,19 @@ impl Noise {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
-    /// Stop variance from the closures' innovations.
-    pub fn set_stop_variance(&mut self, found: f32, stops: TurnStops) {
-        let (floor, cap) = match stops {
-            TurnStops::Fenced => (FENCE_FLOOR, BY_HAND),
-            TurnStops::ByHand => (BY_HAND_FLOOR, 3.0 * BY_HAND),
+    /// Stop variance from the closures' innovations: `found` with its own sigma, weighed against the expectation, which
+    /// counts as [`STOPS_EXPECTED`] stops seen (a scaled inverse χ² prior). A dozen closures alone would often deny that stops
+    /// err at all.
+    pub fn set_stop_variance(&mut self, found: f32, found_sigma: f32, stops: TurnStops) {
+        let (floor, expected) = match stops {
+            TurnStops::Fenced => (FENCE_FLOOR, FENCED),
+            TurnStops::ByHand => (BY_HAND_FLOOR, BY_HAND),
         };
-        self.stop_sigma_rad = libm::sqrtf(found.max(0.0)).clamp(floor, cap);
+        let expected = expected * expected;
+        let weight = 1.0 / (found_sigma * found_sigma);
+        let prior = STOPS_EXPECTED / (2.0 * expected * expected);
+        let variance = (weight * found + prior * expected) / (weight + prior);
+        self.stop_sigma_rad = libm::sqrtf(variance.max(0.0)).clamp(floor, 3.0 * BY_HAND);
     }
 }
 

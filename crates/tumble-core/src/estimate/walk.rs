@@ -175,8 +175,7 @@ impl<const S: usize> Walk<S> {
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
     /// linearisation but the still's own noise (0.1 mrad, whose square is nothing).
     fn level(&mut self, force: &Vector3<f32>, variance: f32, noise: &Noise) {
-        let up = self.attitude * force;
-        let Some(turn) = UnitQuaternion::rotation_between(&up, &Vector3::z()) else { return };
+        let turn = model::levelling(&(self.attitude * force));
         self.attitude = UnitQuaternion::new_normalize((turn * self.attitude).into_inner());
         let before = core::mem::replace(&mut self.level_variance, variance);
         if !self.aligned {
