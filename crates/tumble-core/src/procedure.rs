@@ -30,7 +30,7 @@ use track::Track;
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "no heap to box a judgement into, and inputs come one at a time")]
+#[allow(clippy::large_enum_variant, reason = "no heap to box a judgement into; on 32 bits it is not large")]
 pub enum Input {
     /// The hands did something. All events are wanted, in a session or not.
     Motion(MotionEvent),
@@ -150,11 +150,11 @@ pub struct Procedure {
 
 impl Procedure {
     /// No session. `in_force`: was a calibration found in flash?
-    pub fn new(in_force: bool) -> Self {
+    pub const fn new(in_force: bool) -> Self {
         Self {
             phase: Phase::Idle,
             track: Track::new(),
-            collect: Collect::new(Setup::default()),
+            collect: Collect::new(Setup::CAUTIOUS),
             in_force,
             percent: 0,
             poses: 0,

@@ -63,7 +63,7 @@ impl<const R: usize, const S: usize> Default for Session<R, S> {
 
 impl<const R: usize, const S: usize> Session<R, S> {
     /// Idle, with no calibration in force.
-    pub fn new() -> Self {
+    pub const fn new() -> Self {
         Self {
             tape: Tape::new(),
             segmenter: Segmenter::new(1.0),

@@ -105,7 +105,7 @@ pub struct Estimator<const S: usize> {
 
 /// Where a run stands.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "no heap to box an estimate into, and there is one at a time")]
+#[allow(clippy::large_enum_variant, reason = "no heap to box an estimate into, and there is one at a time")]
 pub enum Progress {
     /// Part of the work done, 0 to 1, if it takes [`MIN_PASSES`].
     Working(f32),

@@ -46,7 +46,7 @@ pub struct Completed {
 }
 
 /// Integrates samples by the trapezoid rule.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Accumulator {
     last: Option<Sample>,
     record_s: f32,
@@ -64,10 +64,38 @@ pub struct Accumulator {
     clipped: u8,
 }
 
+const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+
+impl Default for Accumulator {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Accumulator {
     /// A gap is longer than this, s. Up to it the trapezoid rule bridges what was lost: a hand's 20 rad/s² over 50 ms
     /// leaves an error of ω̈T³/12, some 10 µrad.
     pub const GAP_S: f32 = 0.05;
+
+    /// Nothing yet.
+    pub const fn new() -> Self {
+        Self {
+            last: None,
+            record_s: 0.0,
+            rotation: ZERO,
+            coning: ZERO,
+            impulse: ZERO,
+            block_s: 0.0,
+            samples: 0,
+            origin_rate: ZERO,
+            origin_force: ZERO,
+            sum_rate: ZERO,
+            sum_force: ZERO,
+            squares_rate: ZERO,
+            squares_force: ZERO,
+            clipped: 0,
+        }
+    }
 
     /// Takes one sample. Time that stands still or runs backwards is passed over.
     pub fn push(&mut self, sample: &Sample, clipped: u8) -> Completed {
@@ -80,7 +108,7 @@ impl Accumulator {
         }
         let dt = (sample.t_us - last.t_us) as f32 * 1e-6;
         if dt > Self::GAP_S {
-            *self = Self { last: Some(*sample), ..Self::default() };
+            *self = Self { last: Some(*sample), ..Self::new() };
             return Completed { gap_s: Some(dt), ..Completed::default() };
         }
         self.integrate(&last, sample, dt);

@@ -62,6 +62,11 @@ pub struct RevolutionCheck {
 }
 
 impl RevolutionCheck {
+    /// No visit yet.
+    pub const fn new() -> Self {
+        Self { face: None, since_closed_rad: 0.0 }
+    }
+
     /// Takes the move that ended in a rest on `face`; says whether it completed a turn.
     pub fn arrive(&mut self, kind: &Kind, face: Option<Face>) -> Option<MotionEvent> {
         let Kind::OnTable { face: on, angle_rad } = *kind else {

@@ -50,9 +50,9 @@ pub struct Segmenter {
 
 impl Segmenter {
     /// `tolerance` as in [`Stillness::new`].
-    pub fn new(tolerance: f32) -> Self {
+    pub const fn new(tolerance: f32) -> Self {
         Self {
-            accumulator: Accumulator::default(),
+            accumulator: Accumulator::new(),
             stillness: Stillness::new(tolerance),
             state: State::Moving { quiet: 0, candidate_first: 0, candidate_us: 0 },
             first: 0,
@@ -63,7 +63,7 @@ impl Segmenter {
             moving_blocks: 0,
             disproof: 0,
             last_up: None,
-            visit: RevolutionCheck::default(),
+            visit: RevolutionCheck::new(),
             full: false,
         }
     }

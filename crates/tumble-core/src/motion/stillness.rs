@@ -90,7 +90,7 @@ impl Excess {
 
 impl Stillness {
     /// `tolerance` multiplies every limit (as a standard deviation); 1 is the derived value.
-    pub fn new(tolerance: f32) -> Self {
+    pub const fn new(tolerance: f32) -> Self {
         Self {
             rate_floor: f32::INFINITY,
             force_floor: f32::INFINITY,

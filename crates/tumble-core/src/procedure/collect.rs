@@ -43,8 +43,8 @@ pub(super) struct Collect {
 }
 
 impl Collect {
-    pub(super) fn new(setup: Setup) -> Self {
-        Self { setup, coverage: Coverage::default(), last_face: None, pending: None, bumped: None }
+    pub(super) const fn new(setup: Setup) -> Self {
+        Self { setup, coverage: Coverage::EMPTY, last_face: None, pending: None, bumped: None }
     }
 
     /// Drops what was collected on a face.

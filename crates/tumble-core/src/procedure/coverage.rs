@@ -48,6 +48,9 @@ pub struct Coverage {
 }
 
 impl Coverage {
+    /// Nothing done.
+    pub const EMPTY: Self = Self { held: FaceSet::EMPTY, ccw: FaceSet::EMPTY, cw: FaceSet::EMPTY };
+
     /// Faces with a still that is long enough.
     pub fn held(&self) -> FaceSet {
         self.held

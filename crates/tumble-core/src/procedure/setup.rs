@@ -44,6 +44,11 @@ pub struct Setup {
     pub scheme: Scheme,
 }
 
+impl Setup {
+    /// The default, for constants.
+    pub const CAUTIOUS: Self = Self { stops: TurnStops::ByHand, box_faces: BoxFaces::Unknown, scheme: Scheme::Double };
+}
+
 impl TurnStops {
     /// `fenced` or `by-hand`, as on the console and in a recording's metadata.
     pub fn name(self) -> &'static str {
