@@ -127,6 +127,7 @@ fn debian_cargo() -> Command {
     let mut cargo = Command::new("/usr/bin/cargo");
     cargo
         .env("RUSTC", "/usr/bin/rustc")
+        .env("RUSTDOC", "/usr/bin/rustdoc")
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER", "ld.lld") // Debian's compiler has no rust-lld
         .env_remove("RUSTUP_TOOLCHAIN");
