@@ -9,7 +9,7 @@ usage: cargo xtask [--toolchain auto|debian] TASK [ARGUMENTS]
 
   setup   make sure that firmware for the board can be built on this machine
   demo    set-up, then the whole story on the emulated board; arguments are passed on:
-          --seed N  --by-hand  --fenced  --verbose  --replay REC.csv
+          --seed N  --by-hand  --verbose  --json  --replay REC.csv
   test    set-up, then every check and test
   size    set-up, then flash, RAM and stack of the firmware
   bench   set-up, then instructions on the emulated core and time on this machine

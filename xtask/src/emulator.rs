@@ -30,7 +30,8 @@ pub fn demo(arguments: &Arguments) -> Result<(), Failure> {
 /// Builds the image that is emulated.
 pub fn image(arguments: &Arguments) -> Result<std::path::PathBuf, Failure> {
     let toolchain = toolchain::set_up(arguments.toolchain)?;
-    println!("set-up: the firmware is built with {}", toolchain.name());
+    // Standard output belongs to the demo, which may print JSON there.
+    eprintln!("set-up: the firmware is built with {}", toolchain.name());
     firmware::build(toolchain, Board::BlackPill)
 }
 

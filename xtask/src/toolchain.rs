@@ -42,11 +42,11 @@ pub fn set_up(choice: Choice) -> Result<Toolchain, Failure> {
         if has_target() {
             return Ok(Toolchain::Native);
         }
-        println!("set-up: the {TARGET} target is not installed; asking rustup for it");
+        eprintln!("set-up: the {TARGET} target is not installed; asking rustup for it");
         if run(Command::new("rustup").args(["target", "add", TARGET])).is_ok() && has_target() {
             return Ok(Toolchain::Native);
         }
-        println!("set-up: rustup could not add it; falling back on Debian's packages");
+        eprintln!("set-up: rustup could not add it; falling back on Debian's packages");
     }
     set_up_debian()
 }
@@ -82,7 +82,7 @@ fn install_debian() -> Result<(), Failure> {
         )
         .into());
     }
-    println!("set-up: apt-get install {packages}");
+    eprintln!("set-up: apt-get install {packages}");
     run(Command::new("apt-get").args(["update", "-qq"]))?;
     run(Command::new("apt-get")
         .env("DEBIAN_FRONTEND", "noninteractive")
