@@ -1,5 +1,7 @@
 //! What several of the tests need.
 
+pub mod sim;
+
 use std::path::PathBuf;
 
 /// A real recording by name, or none, said plainly, where the folder is absent: the recordings are no part of the

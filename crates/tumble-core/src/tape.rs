@@ -90,6 +90,8 @@ pub struct Segment {
     pub exclusion: Exclusion,
     /// Channels that stood at an end of their range: bits 0–2 gyroscope x–z, 3–5 accelerometer x–z.
     pub clipped: u8,
+    /// How many samples had such a channel.
+    pub clipped_samples: u16,
 }
 
 impl Segment {

@@ -44,8 +44,8 @@ const NARROWED: f32 = 30.0;
 const NARROWEST: f32 = 2e-5;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
-/// Upper 1e-3 point of χ² with 2 degrees of freedom: one move in a thousand is down-weighted for nothing.
-const HINGE_LIMIT: f32 = 13.8;
+/// Degrees of freedom of the Student's t distribution that moves are taken to follow: heavy tails, gentle weights.
+const STUDENT: f32 = 4.0;
 
 /// What the session was told.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +107,7 @@ pub struct Estimator<const S: usize> {
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant, reason = "no heap to box an estimate into, and there is one at a time")]
 pub enum Progress {
-    /// Part of the work done, 0 to 1, if it takes [`MIN_PASSES`].
+    /// Part of the work done, if it takes the least number of passes.
     Working(f32),
     /// Done.
     Done(Estimate),
@@ -142,6 +142,7 @@ impl<const S: usize> Estimator<S> {
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
         }
         self.adapt();
+        self.walk.adapting = self.passes < SETTLED + ADAPTING;
         let mut prior = prior(&self.conditions, &self.start, &nominal);
         if self.passes >= 2 {
             narrow(&mut prior, &self.walk.filter);
@@ -188,7 +189,7 @@ impl<const S: usize> Estimator<S> {
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
-    /// out even so is down-weighted by itself, as a Student's t distribution would.
+    /// out even so is down-weighted by itself, as a Student's t distribution would: `(ν + χ²) / (ν + 2)`.
     fn scale_motion(&mut self) {
         let mut hinges: heapless::Vec<f32, S> =
             self.walk.noise.iter().map(|noise| noise.hinge_nis).filter(|nis| nis.is_finite()).collect();
@@ -206,7 +207,8 @@ impl<const S: usize> Estimator<S> {
         self.noise.motion_scale *= excess;
         for noise in &mut self.walk.noise {
             let nis = noise.hinge_nis / excess;
-            noise.rate_scale = if nis > HINGE_LIMIT { nis / 2.0 } else { 1.0 };
+            // Not a number for a move without rests on both sides, which `max` turns into 1.
+            noise.rate_scale = ((STUDENT + nis) / (STUDENT + 2.0)).max(1.0);
         }
     }
 
@@ -222,10 +224,17 @@ impl<const S: usize> Estimator<S> {
                 observable: core::array::from_fn(|i| core::array::from_fn(|j| correction_sigma[(i, j)] < OBSERVABLE)),
             }
         };
+        let mut gyroscope = triad(&nominal.gyro, 12);
+        if self.noise.has_bias_walk() {
+            // The filter's bias is the last; the session's is the mean, and its sigma tells how far it wandered.
+            let (mean, spread) = start::resting_rate(tape);
+            gyroscope.triad.bias = mean;
+            gyroscope.bias_sigma = gyroscope.bias_sigma.zip_map(&spread, libm::hypotf);
+        }
         Estimate {
             calibration: Calibration {
                 accelerometer: triad(&nominal.accel, 0),
-                gyroscope: triad(&nominal.gyro, 12),
+                gyroscope,
                 frame: self.conditions.frame(),
                 temperature_degc: tape.temperature_degc(),
                 fit: self.fit(tape, nominal),

@@ -84,7 +84,7 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     }
     for segment in tape.segments().iter().filter(|segment| segment.exclusion == Exclusion::Clipped) {
         let channel = segment.clipped.trailing_zeros() as u8;
-        bench.warn(Reason::Clipped { channel, samples: u32::from(segment.end - segment.first) });
+        bench.warn(Reason::Clipped { channel, samples: u32::from(segment.clipped_samples) });
     }
     for (segment, scale) in estimate.outliers.iter() {
         if *scale > OUTLIER_LIMIT {

@@ -10,7 +10,7 @@ use crate::tape::{Exclusion, Kind, Segment, Tape};
 
 /// The longest usable stills' means by face, and what follows.
 pub fn nominal<const R: usize, const S: usize>(tape: &Tape<R, S>, gravity: f32) -> Nominal {
-    let bias = resting_rate(tape);
+    let (bias, _) = resting_rate(tape);
     Nominal {
         accel: accelerometer(tape, gravity),
         earth_rad_s: Vector3::zeros(),
@@ -18,15 +18,19 @@ pub fn nominal<const R: usize, const S: usize>(tape: &Tape<R, S>, gravity: f32) 
     }
 }
 
-/// Mean rate over all usable stills.
-fn resting_rate<const R: usize, const S: usize>(tape: &Tape<R, S>) -> Vector3<f32> {
-    let (mut sum, mut time) = (Vector3::zeros(), 0.0);
+/// Mean rate over all usable stills, weighted by their length, and one sigma of the stills' own means about it, rad/s.
+pub fn resting_rate<const R: usize, const S: usize>(tape: &Tape<R, S>) -> (Vector3<f32>, Vector3<f32>) {
+    let (mut mean, mut squares, mut time) = (Vector3::zeros(), Vector3::zeros(), 0.0);
     for segment in usable_stills(tape) {
+        let rate = mean_rate(tape, usize::from(segment.first), usize::from(segment.end));
         let duration = segment.duration_s();
-        sum += mean_rate(tape, usize::from(segment.first), usize::from(segment.end)) * duration;
         time += duration;
+        // West's recurrence: no difference of large squares.
+        let deviation = rate - mean;
+        mean += deviation * (duration / time);
+        squares += deviation.component_mul(&(rate - mean)) * duration;
     }
-    if time > 0.0 { sum / time } else { sum }
+    (mean, if time > 0.0 { (squares / time).map(libm::sqrtf) } else { squares })
 }
 
 /// `a₊ = bias + g/s`, `a₋ = bias − g/s` on each axis; no error where a face is missing.

@@ -33,6 +33,8 @@ pub struct Walk<const S: usize> {
     pub noise: Vec<SegmentNoise, S>,
     /// Over the pass.
     pub sums: Sums,
+    /// Do turns still learn their own noise?
+    pub adapting: bool,
     nominal: Nominal,
     gravity: f32,
     segment: usize,
@@ -67,6 +69,7 @@ impl<const S: usize> Walk<S> {
             filter: Filter::default(),
             noise: Vec::new(),
             sums: Sums::default(),
+            adapting: true,
             nominal,
             gravity,
             segment: 0,
@@ -93,7 +96,7 @@ impl<const S: usize> Walk<S> {
     /// Starts the next pass about new parameters; `filter` holds the prior about them.
     pub fn restart(&mut self, nominal: Nominal, filter: Filter) {
         let noise = core::mem::take(&mut self.noise);
-        *self = Self { filter, noise, ..Self::new(nominal, self.gravity) };
+        *self = Self { filter, noise, adapting: self.adapting, ..Self::new(nominal, self.gravity) };
     }
 
     /// Segments walked, for a progress display.
@@ -367,7 +370,7 @@ impl<const S: usize> Walk<S> {
             && segment.exclusion == Exclusion::None
         {
             self.learn_pivot(noise);
-            if let Some(factor) = self.turn_noise.factor() {
+            if let Some(factor) = self.turn_noise.factor().filter(|_| self.adapting) {
                 let scale = &mut self.noise[self.segment].force_scale;
                 *scale = (*scale * factor).clamp(1.0, 1e6);
             }

@@ -30,6 +30,8 @@ pub struct Block {
     pub force_variance: f32,
     /// Channels at an end of their range, as in [`crate::tape::Segment::clipped`].
     pub clipped: u8,
+    /// Samples with such a channel.
+    pub clipped_samples: u16,
     /// End, µs.
     pub end_us: u64,
 }
@@ -62,6 +64,7 @@ pub struct Accumulator {
     squares_rate: Vector3<f32>,
     squares_force: Vector3<f32>,
     clipped: u8,
+    clipped_samples: u16,
 }
 
 const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
@@ -94,6 +97,7 @@ impl Accumulator {
             squares_rate: ZERO,
             squares_force: ZERO,
             clipped: 0,
+            clipped_samples: 0,
         }
     }
 
@@ -146,6 +150,7 @@ impl Accumulator {
         self.squares_force += force.component_mul(&force);
         self.samples += 1;
         self.clipped |= clipped;
+        self.clipped_samples += u16::from(clipped != 0);
     }
 
     fn take_record(&mut self) -> Record {
@@ -174,11 +179,13 @@ impl Accumulator {
             rate_variance: pooled(&self.squares_rate, &rate),
             force_variance: pooled(&self.squares_force, &force),
             clipped: self.clipped,
+            clipped_samples: self.clipped_samples,
             end_us,
         };
         self.block_s = 0.0;
         self.samples = 0;
         self.clipped = 0;
+        self.clipped_samples = 0;
         self.sum_rate = Vector3::zeros();
         self.sum_force = Vector3::zeros();
         self.squares_rate = Vector3::zeros();

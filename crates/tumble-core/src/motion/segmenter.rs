@@ -38,7 +38,9 @@ pub struct Segmenter {
     state: State,
     first: usize,
     start_us: u64,
+    started: bool,
     clipped: u8,
+    clipped_samples: u16,
     block_first: usize,
     block_start_us: u64,
     moving_blocks: u32,
@@ -57,7 +59,9 @@ impl Segmenter {
             state: State::Moving { quiet: 0, candidate_first: 0, candidate_us: 0 },
             first: 0,
             start_us: 0,
+            started: false,
             clipped: 0,
+            clipped_samples: 0,
             block_first: 0,
             block_start_us: 0,
             moving_blocks: 0,
@@ -107,7 +111,8 @@ impl Segmenter {
         tape: &mut Tape<R, S>,
     ) -> Events {
         let mut events = Events::new();
-        if self.start_us == 0 {
+        if !self.started {
+            self.started = true;
             self.start_us = sample.t_us;
             self.block_start_us = sample.t_us;
         }
@@ -166,6 +171,7 @@ impl Segmenter {
     ) -> Result<(), Full> {
         let State::Moving { mut quiet, mut candidate_first, mut candidate_us } = self.state else { return Ok(()) };
         self.clipped |= block.clipped;
+        self.clipped_samples = self.clipped_samples.saturating_add(block.clipped_samples);
         self.moving_blocks += 1;
         if self.moving_blocks.is_multiple_of(2) {
             let _ = events.push(MotionEvent::Moving { excess: excess.of_entering() });
@@ -231,6 +237,7 @@ impl Segmenter {
         if excess.of_leaving() > 1.0 {
             let (face, held_s) = self.close_still(tape, pending_us)?;
             self.clipped = block.clipped;
+            self.clipped_samples = block.clipped_samples;
             self.moving_blocks = 0;
             self.state = State::Moving { quiet: 0, candidate_first: tape.len(), candidate_us: block.end_us };
             let _ = events.push(MotionEvent::StillEnded { face, held_s });
@@ -272,6 +279,7 @@ impl Segmenter {
         self.last_up = Some(up);
         self.stillness.set_resting_rate(mean_rate(tape, self.first, pending_first));
         self.clipped = 0;
+        self.clipped_samples = 0;
         let rate_variance = variance_sum / blocks as f32;
         self.close(tape, Kind::Still { face, rate_variance }, pending_first, end_us)?;
         Ok((face, held_s))
@@ -293,10 +301,12 @@ impl Segmenter {
             end_us,
             exclusion,
             clipped: self.clipped,
+            clipped_samples: self.clipped_samples,
         })?;
         self.first = end;
         self.start_us = end_us;
         self.clipped = 0;
+        self.clipped_samples = 0;
         Ok(())
     }
 

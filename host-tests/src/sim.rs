@@ -1,0 +1,102 @@
+//! Simulated sessions through the device's own code, and their errors against the truth.
+
+use tumble_core::estimate::{Conditions, Estimate, Estimator, Progress};
+use tumble_core::motion::segmenter::Segmenter;
+use tumble_core::procedure::{BoxFaces, TurnStops};
+use tumble_core::sample::Sample;
+use tumble_core::tape::Tape;
+use tumble_sim::SchemeConfig;
+use tumble_sim::sensor::FrameTruth;
+
+/// Room for more than the board has: long schemes are tested too.
+pub type Memory = Tape<8192, 256>;
+
+/// What was estimated and what is true, in the same frame.
+pub struct Session {
+    /// The estimate.
+    pub estimate: Estimate,
+    /// Its tape.
+    pub tape: Box<Memory>,
+    /// The truth in the estimate's frame.
+    pub truth: FrameTruth,
+}
+
+/// One number against the truth.
+#[derive(Clone, Copy, Debug)]
+pub struct Deviation {
+    /// Name as in `docs/protocol.md`.
+    pub name: &'static str,
+    /// Estimate less truth.
+    pub error: f64,
+    /// What the estimate says of it.
+    pub sigma: f64,
+}
+
+/// Records a scheme onto a tape.
+pub fn record(config: &SchemeConfig) -> (Box<Memory>, tumble_sim::Truth) {
+    let recording = config.record().expect("a valid configuration");
+    let mut tape = Box::new(Memory::new());
+    let mut segmenter = Segmenter::new(1.0);
+    for sample in &recording.samples {
+        let sample = Sample {
+            t_us: (sample.t_s * 1e6).round() as u64,
+            angular_rate_rad_s: sample.angular_rate_rad_s.cast(),
+            specific_force_mps2: sample.specific_force_mps2.cast(),
+            temperature_degc: sample.temperature_degc as f32,
+        };
+        tape.note_temperature(sample.temperature_degc);
+        segmenter.step(&sample, 0, &mut tape);
+    }
+    segmenter.finish(&mut tape);
+    (tape, recording.truth)
+}
+
+/// Runs the estimator over a scheme.
+pub fn session(config: &SchemeConfig, stops: TurnStops, faces: BoxFaces) -> Session {
+    let (tape, truth) = record(config);
+    let conditions = Conditions { stops, faces, gravity_mps2: config.world.gravity_mps2 as f32 };
+    let mut estimator = Box::new(Estimator::new(&tape, conditions));
+    let estimate = loop {
+        match estimator.work(&tape, 64).expect("the arithmetic holds") {
+            Progress::Working(_) => {}
+            Progress::Done(estimate) => break estimate,
+        }
+    };
+    let truth = if faces == BoxFaces::Square { truth.in_box } else { truth.in_accelerometer_frame };
+    Session { estimate, tape, truth }
+}
+
+impl Session {
+    /// Every number with a sigma.
+    pub fn deviations(&self) -> Vec<Deviation> {
+        let (accel, gyro) = (&self.truth.accelerometer, &self.truth.gyroscope);
+        let truths = accel.bias_mps2.iter().chain(accel.correction.iter().flatten());
+        let truths = truths.chain(&gyro.bias_rad_s).chain(gyro.correction.iter().flatten());
+        self.estimate
+            .calibration
+            .parameters()
+            .zip(truths)
+            .filter_map(|(parameter, truth)| {
+                let sigma = f64::from(parameter.sigma.filter(|sigma| *sigma > 0.0)?);
+                Some(Deviation { name: parameter.name, error: f64::from(parameter.value) - truth, sigma })
+            })
+            .collect()
+    }
+}
+
+/// Root mean square of errors whose name passes, and the mean of their squares over sigma squared.
+pub fn spread(deviations: &[Deviation], which: impl Fn(&str) -> bool) -> (f64, f64) {
+    let chosen: Vec<_> = deviations.iter().filter(|deviation| which(deviation.name)).collect();
+    let mean = |f: fn(&Deviation) -> f64| chosen.iter().map(|d| f(d)).sum::<f64>() / chosen.len() as f64;
+    (mean(|d| d.error * d.error).sqrt(), mean(|d| (d.error / d.sigma).powi(2)))
+}
+
+/// `gyro_correction_xx` and so on.
+pub fn is_gyro_scale(name: &str) -> bool {
+    name.strip_prefix("gyro_correction_").is_some_and(|ij| ij.as_bytes()[0] == ij.as_bytes()[1])
+}
+
+/// `gyro_correction_xy` and so on.
+pub fn is_gyro_cross(name: &str) -> bool {
+    name.starts_with("gyro_correction_") && !is_gyro_scale(name)
+}
