@@ -14,7 +14,7 @@ use embassy_futures::yield_now;
 use embassy_time::{Duration, Instant, Ticker};
 use mpu9250_spi::{Identity, SelfTest, Standing};
 use tumble_core::command::{Command, CommandError};
-use tumble_core::message::{Message, Task, Trouble};
+use tumble_core::message::{Message, Trouble};
 use tumble_core::procedure::{Phase, Procedure, Setup};
 use tumble_core::record::Origin;
 use tumble_core::sample::Ranges;
@@ -175,7 +175,6 @@ impl Desk {
     async fn store(&mut self) {
         // The session asks for it right after it accepted one.
         let Some(accepted) = self.session.accepted().copied() else { return };
-        self.voice.say(&Message::Busy { task: Task::Store, percent: 0 }).await;
         let origin = Origin {
             generation: 0,
             firmware: firmware_version(),
