@@ -13,6 +13,7 @@ pub mod run;
 pub mod sensor_wires;
 pub mod serial_wire;
 pub mod stall;
+pub mod story;
 pub mod timer;
 pub mod world;
 
