@@ -147,25 +147,26 @@ fn reject_the_undetermined<const R: usize, const S: usize>(
     tape: &Tape<R, S>,
     bench: &mut Bench,
 ) {
+    let (held, turned) = done(tape);
     let [mut faces, mut turns] = [false, false];
     for (index, parameter) in calibration.parameters().enumerate().filter(|(_, parameter)| !parameter.observable) {
         let reason = Reason::NotObservable { name: parameter.name };
-        if index < 12 {
-            faces = true;
-            bench.reject(reason);
-        } else if is_diagonal(index) {
-            turns = true;
-            bench.reject(reason);
-        } else {
-            bench.warn(reason);
+        // Where faces or turns are missing, that is the reason, and not what follows from it number by number.
+        match index {
+            0..12 if held != FaceSet::FULL => faces = true,
+            0..12 => bench.reject(reason),
+            _ if turned != 0b111 => turns = true,
+            _ if is_diagonal(index) => bench.reject(reason),
+            _ => bench.warn(reason),
         }
     }
-    let (held, turned) = done(tape);
-    if faces && held != FaceSet::FULL {
-        bench.reject(Reason::FacesMissing { missing: held.complement() });
+    if turns {
+        let hopeless = calibration.gyroscope.observable.iter().enumerate().any(|(axis, row)| !row[axis]);
+        let reason = Reason::TurnsMissing { axes: !turned & 0b111 };
+        if hopeless { bench.reject(reason) } else { bench.warn(reason) }
     }
-    if turns && turned != 0b111 {
-        bench.reject(Reason::TurnsMissing { axes: !turned & 0b111 });
+    if faces {
+        bench.reject(Reason::FacesMissing { missing: held.complement() });
     }
 }
 
