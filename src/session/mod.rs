@@ -19,6 +19,7 @@ use tumble_core::procedure::{Phase, Procedure, Setup};
 use tumble_core::record::Origin;
 use tumble_core::sample::Ranges;
 use tumble_core::session::{Effect, Session};
+use tumble_core::tape::Tape;
 
 use crate::board::ParameterFlash;
 use crate::console;
@@ -26,7 +27,7 @@ use crate::fault::Fault;
 use crate::shared::{SAMPLES, SENSOR_EVENTS, SESSION_ALIVE, SensorEvent, Stamped};
 use keeper::{Keeper, firmware_version};
 use lamp::Lamp;
-use static_cell::StaticCell;
+use static_cell::{ConstStaticCell, StaticCell};
 use stream::Stream;
 use voice::Voice;
 
@@ -34,7 +35,7 @@ use voice::Voice;
 const RANGES: Ranges = Ranges::WIDEST;
 
 /// Records of 14 bytes: 12 a second while it moves, 2 at rest. A double scheme by a slow hand takes 2000.
-const RECORDS: usize = 1500;
+const RECORDS: usize = 3072;
 /// Rests, turns and moves. A double scheme without a mistake has 40.
 const SEGMENTS: usize = 160;
 
@@ -63,12 +64,13 @@ struct Desk {
     /// As last stated with `calibrate`.
     setup: Setup,
     last_seq: Option<u32>,
-    session: &'static mut Session<RECORDS, SEGMENTS>,
+    session: &'static mut Session<'static, RECORDS, SEGMENTS>,
 }
 
 /// The task's body. Never ends.
 pub async fn run(flash: ParameterFlash, reset_cause: &'static str) -> ! {
     /// Half of the memory, so not on the stack.
+    static TAPE: ConstStaticCell<Tape<RECORDS, SEGMENTS>> = ConstStaticCell::new(Tape::new());
     static SESSION: StaticCell<Session<RECORDS, SEGMENTS>> = StaticCell::new();
     let mut desk = Desk {
         voice: Voice::default(),
@@ -81,7 +83,7 @@ pub async fn run(flash: ParameterFlash, reset_cause: &'static str) -> ! {
         said_hello: false,
         setup: Setup::default(),
         last_seq: None,
-        session: SESSION.init_with(Session::new),
+        session: SESSION.init_with(|| Session::new(TAPE.take())),
     };
     let mut unreadable = desk.keeper.load().await.err().map(Message::Error);
     desk.put_in_force();

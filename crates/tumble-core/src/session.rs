@@ -38,10 +38,11 @@ const EFFECTS: usize = 40;
 /// Records walked in one slice of work: some 2 ms at 96 MHz (`cargo xtask bench`).
 const SLICE_RECORDS: usize = 6;
 
-/// Everything a session needs, with room for `R` records in `S` segments.
+/// Everything a session needs, with room for `R` records in `S` segments. The tape is lent: it is most of the memory, all
+/// zero when new, and so a static that costs no flash.
 #[derive(Debug)]
-pub struct Session<const R: usize, const S: usize> {
-    tape: Tape<R, S>,
+pub struct Session<'t, const R: usize, const S: usize> {
+    tape: &'t mut Tape<R, S>,
     segmenter: Segmenter,
     procedure: Procedure,
     estimator: Option<Estimator<S>>,
@@ -55,17 +56,11 @@ pub struct Session<const R: usize, const S: usize> {
     effects: Deque<Effect, EFFECTS>,
 }
 
-impl<const R: usize, const S: usize> Default for Session<R, S> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl<const R: usize, const S: usize> Session<R, S> {
+impl<'t, const R: usize, const S: usize> Session<'t, R, S> {
     /// Idle, with no calibration in force.
-    pub const fn new() -> Self {
+    pub const fn new(tape: &'t mut Tape<R, S>) -> Self {
         Self {
-            tape: Tape::new(),
+            tape,
             segmenter: Segmenter::new(1.0),
             procedure: Procedure::new(false),
             estimator: None,
@@ -121,10 +116,10 @@ impl<const R: usize, const S: usize> Session<R, S> {
         }
         let events = if self.recording {
             self.tape.note_temperature(sample.temperature_degc);
-            self.segmenter.step(sample, clipped, &mut self.tape)
+            self.segmenter.step(sample, clipped, self.tape)
         } else if self.estimator.is_none() {
-            let events = self.segmenter.step(sample, clipped, &mut self.tape);
-            self.segmenter.drop_closed(&mut self.tape);
+            let events = self.segmenter.step(sample, clipped, self.tape);
+            self.segmenter.drop_closed(self.tape);
             if self.tape.fill() > 0.9 {
                 // Nobody records, and one endless rest or move fills the tape: begin again.
                 self.begin_tape();
@@ -180,7 +175,7 @@ impl<const R: usize, const S: usize> Session<R, S> {
     /// One slice of it.
     pub fn work(&mut self, t_us: u64) {
         let Some(estimator) = &mut self.estimator else { return };
-        match estimator.work(&self.tape, SLICE_RECORDS) {
+        match estimator.work(self.tape, SLICE_RECORDS) {
             Ok(Progress::Working(share)) => {
                 let percent = (share.min(0.99) * 100.0) as u8;
                 self.procedure_step(t_us, Input::Percent(percent));
@@ -188,13 +183,13 @@ impl<const R: usize, const S: usize> Session<R, S> {
             Ok(Progress::Done(estimate)) => {
                 self.estimator = None;
                 self.estimated = Some(estimate.calibration);
-                let (judgement, accepted) = judge::judge(&estimate, &self.tape, self.lost);
+                let (judgement, accepted) = judge::judge(&estimate, self.tape, self.lost);
                 self.accepted = accepted;
                 self.finish_estimate(t_us, judgement);
             }
             Err(breakdown) => {
                 self.estimator = None;
-                let mut judgement = judge::nothing_to_estimate(&self.tape);
+                let mut judgement = judge::nothing_to_estimate(self.tape);
                 judgement.reasons.clear();
                 let _ = judgement.reasons.push(crate::calibration::Reason::Arithmetic { place: breakdown.0 });
                 self.finish_estimate(t_us, judgement);
@@ -231,8 +226,8 @@ impl<const R: usize, const S: usize> Session<R, S> {
             }
             Action::Estimate => {
                 self.recording = false;
-                self.segmenter.finish(&mut self.tape);
-                self.estimator = Some(Estimator::new(&self.tape, self.conditions(self.procedure.setup())));
+                self.segmenter.finish(self.tape);
+                self.estimator = Some(Estimator::new(self.tape, self.conditions(self.procedure.setup())));
             }
             Action::StopEstimate => self.estimator = None,
             Action::Store => self.effect(Effect::Store),
@@ -262,7 +257,7 @@ impl<const R: usize, const S: usize> Session<R, S> {
 
     /// Strikes out what was recorded on a face.
     fn forget(&mut self, face: Face) {
-        self.segmenter.cut(&mut self.tape);
+        self.segmenter.cut(self.tape);
         for segment in self.tape.segments_mut() {
             if segment.face() == Some(face) && segment.exclusion == Exclusion::None {
                 segment.exclusion = Exclusion::Redone;
