@@ -13,6 +13,7 @@ use embassy_futures::select::{Either5, select5};
 use embassy_futures::yield_now;
 use embassy_time::{Duration, Instant, Ticker};
 use mpu9250_spi::{Identity, SelfTest, Standing};
+use static_cell::{ConstStaticCell, StaticCell};
 use tumble_core::command::{Command, CommandError};
 use tumble_core::message::{Message, Trouble};
 use tumble_core::procedure::{Phase, Procedure, Setup};
@@ -27,7 +28,6 @@ use crate::fault::Fault;
 use crate::shared::{SAMPLES, SENSOR_EVENTS, SESSION_ALIVE, SensorEvent, Stamped};
 use keeper::{Keeper, firmware_version};
 use lamp::Lamp;
-use static_cell::{ConstStaticCell, StaticCell};
 use stream::Stream;
 use voice::Voice;
 
