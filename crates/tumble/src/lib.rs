@@ -11,3 +11,4 @@ pub mod output;
 pub mod recording;
 pub mod serial;
 pub mod simulate;
+pub mod study;

@@ -7,6 +7,7 @@ mod export;
 mod output;
 mod serial;
 mod simulate;
+mod study;
 
 use std::process::ExitCode;
 
@@ -36,6 +37,8 @@ enum Command {
     Verify(serial::VerifyArguments),
     /// Write a calibration for another program
     Export(export::Arguments),
+    /// Run a study whose figures are published
+    Study(study::Arguments),
 }
 
 /// How a turn ends.
@@ -97,6 +100,7 @@ pub fn run(cli: &Cli) -> ExitCode {
         Command::Console(arguments) => serial::console(arguments),
         Command::Verify(arguments) => serial::verify(arguments),
         Command::Export(arguments) => export::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,6 +1,7 @@
 //! What a calibration looks like outside: the contract's JSON ([`Report`]) and a page for the terminal ([`table`]).
 
 mod report;
+pub mod study;
 pub mod table;
 
 pub use report::{

@@ -1,0 +1,10 @@
+//! Studies: what the estimators reach over many simulated sessions, against what physics allows.
+//!
+//! A study is arithmetic over `tumble-sim`'s recordings and the device's own core; it neither prints nor parses.
+
+pub mod bound;
+pub mod limits;
+pub mod navigation;
+pub mod parallel;
+pub mod summary;
+pub mod trial;

@@ -1,0 +1,127 @@
+//! One simulated session: the estimate, the truth in the same frame, and the bound.
+
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use thiserror::Error;
+use tumble_core::calibration::{Calibration, Verdict};
+use tumble_core::estimate::{Conditions, PARAMETERS};
+use tumble_core::procedure::{BoxFaces, TurnStops};
+use tumble_core::sample::Sample;
+use tumble_sim::motion::Stops;
+use tumble_sim::sensor::FrameTruth;
+use tumble_sim::{Face, SchemeConfig, SimError};
+
+use super::bound::bound;
+use crate::calibrate::Session;
+use crate::recording::Reading;
+
+/// The 24 parameters.
+pub type Parameters = SVector<f64, PARAMETERS>;
+
+/// A session that could not be studied.
+#[derive(Debug, Error)]
+pub enum TrialError {
+    /// The simulation refused its settings.
+    #[error(transparent)]
+    Simulation(#[from] SimError),
+    /// The estimator gave no numbers.
+    #[error("seed {seed}: no estimate: {reason}")]
+    NoEstimate {
+        /// Of the session.
+        seed: u64,
+        /// The judge's first.
+        reason: String,
+    },
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Estimate less truth.
+    pub error: Parameters,
+    /// The estimator's own.
+    pub covariance: SMatrix<f64, PARAMETERS, PARAMETERS>,
+    /// Sigmas that no estimator can undercut; zero for what the frame fixes.
+    pub bound: Parameters,
+    /// The estimate.
+    pub calibration: Calibration,
+    /// Was it accepted?
+    pub accepted: bool,
+    /// The truth in the estimate's frame.
+    pub truth: FrameTruth,
+    /// `R_f_from_b`: of the estimate's frame.
+    pub rotation_f_from_b: Matrix3<f64>,
+}
+
+impl Trial {
+    /// Simulates, estimates as the device does, and compares.
+    ///
+    /// # Errors
+    /// If there are no numbers to compare.
+    pub fn run(config: &SchemeConfig, faces: BoxFaces) -> Result<Self, TrialError> {
+        let recording = config.record()?;
+        let readings = readings(&recording.samples);
+        let conditions = Conditions { stops: stops(config), faces, gravity_mps2: config.world.gravity_mps2 as f32 };
+        let outcome = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions }.replay(&mut |_| {});
+        let (Some(calibration), Some(covariance)) = (outcome.calibration, outcome.covariance) else {
+            let reason = outcome.reasons.into_iter().next().unwrap_or_default();
+            return Err(TrialError::NoEstimate { seed: config.world.seed, reason });
+        };
+        let bound = bound(config, &recording, faces).diagonal().map(|variance| variance.max(0.0).sqrt());
+        let truth = recording.truth;
+        let (truth, rotation_f_from_b) = match faces {
+            BoxFaces::Square => (truth.in_box, Matrix3::identity()),
+            BoxFaces::Unknown => (truth.in_accelerometer_frame, matrix(&truth.rotation_accelerometer_from_box)),
+        };
+        Ok(Self {
+            error: estimated(&calibration) - true_parameters(&truth),
+            covariance: covariance.cast(),
+            bound,
+            calibration,
+            accepted: outcome.verdict != Verdict::Rejected,
+            truth,
+            rotation_f_from_b,
+        })
+    }
+}
+
+/// Simulated samples as the core takes them.
+pub fn readings(samples: &[tumble_sim::Sample]) -> Vec<Reading> {
+    let reading = |sample: &tumble_sim::Sample| Sample {
+        t_us: (sample.t_s * 1e6).round() as u64,
+        angular_rate_rad_s: sample.angular_rate_rad_s.cast(),
+        specific_force_mps2: sample.specific_force_mps2.cast(),
+        temperature_degc: sample.temperature_degc as f32,
+    };
+    samples.iter().map(|sample| Reading { sample: reading(sample), clipped: 0 }).collect()
+}
+
+fn stops(config: &SchemeConfig) -> TurnStops {
+    match config.world.motion.hands.stops {
+        Stops::ByHand { .. } => TurnStops::ByHand,
+        Stops::Exact | Stops::Fenced { .. } => TurnStops::Fenced,
+    }
+}
+
+/// In the order of [`PARAMETERS`].
+pub fn true_parameters(truth: &FrameTruth) -> Parameters {
+    let (accel, gyro) = (&truth.accelerometer, &truth.gyroscope);
+    let accel = accel.bias_mps2.iter().chain(accel.correction.iter().flatten());
+    let gyro = gyro.bias_rad_s.iter().chain(gyro.correction.iter().flatten());
+    Parameters::from_iterator(accel.chain(gyro).copied())
+}
+
+/// Likewise.
+pub fn estimated(calibration: &Calibration) -> Parameters {
+    Parameters::from_iterator(calibration.parameters().take(PARAMETERS).map(|parameter| f64::from(parameter.value)))
+}
+
+/// A matrix of the truth's.
+pub fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|i, j| rows[i][j])
+}
+
+/// The face within 20° of an upward direction in the box: its index and its axis.
+pub(super) fn up_face(up_b: &Vector3<f64>) -> Option<(usize, Vector3<f64>)> {
+    let cone = f64::from(tumble_core::face::Face::CONE_COS);
+    Face::ALL.into_iter().map(|face| (face.index(), face.up_b())).find(|(_, axis)| axis.dot(up_b) > cone)
+}
