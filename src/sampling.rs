@@ -9,7 +9,7 @@ use embassy_stm32::exti::ExtiInput;
 use embassy_stm32::mode::Async;
 use embassy_time::{Duration, Instant, TimeoutError, Timer, with_timeout};
 use mpu9250_spi::{Configuration, Reading};
-use tumble_core::sample::Counts;
+use tumble_core::sample::{Cadence, Counts};
 
 use crate::board::Sensor;
 use crate::fault::Fault;
@@ -37,7 +37,15 @@ const PAUSE_MOST_QUARTER_SECONDS: u32 = 40;
 #[embassy_executor::task]
 pub async fn run(sensor: Sensor, data_ready: ExtiInput<'static, Async>) -> ! {
     let configuration = Configuration::default();
-    let mut sampling = Sampling { sensor, data_ready, configuration, seq: 0, last_us: None, expected_gap: false };
+    let mut sampling = Sampling {
+        sensor,
+        data_ready,
+        configuration,
+        cadence: Cadence::new(),
+        seq: 0,
+        last_us: None,
+        expected_gap: false,
+    };
     let mut told: Option<(u8, Instant)> = None;
     loop {
         SAMPLING_ALIVE.show();
@@ -60,6 +68,7 @@ struct Sampling {
     sensor: Sensor,
     data_ready: ExtiInput<'static, Async>,
     configuration: Configuration,
+    cadence: Cadence,
     seq: u32,
     last_us: Option<u64>,
     /// The next gap is of our own making: a pause, a self-test, a restart.
@@ -74,6 +83,7 @@ impl Sampling {
             Err(error) => return Fault::Sensor(error),
         };
         SENSOR_STARTS.add(1);
+        self.cadence = Cadence::new();
         tell(SensorEvent::Started(identity)).await;
         let (mut errors, mut stale, mut told) = (0, 0, false);
         loop {
@@ -119,10 +129,12 @@ impl Sampling {
 
     /// Counts what was missed and passes the reading on. A full queue loses this reading, which `seq` then shows.
     fn queue(&mut self, t_us: u64, reading: &Reading) {
-        let missed = self.last_us.map_or(0, |last| missed(t_us.saturating_sub(last), self.configuration.period_us()));
-        if !self.expected_gap {
-            OVERRUNS.add(missed);
-        }
+        let gap_us = self.last_us.map(|last| t_us.saturating_sub(last));
+        let missed = match gap_us {
+            Some(gap_us) if !self.expected_gap => self.cadence.missed(gap_us),
+            _ => 0,
+        };
+        OVERRUNS.add(missed);
         self.expected_gap = false;
         self.last_us = Some(t_us);
         self.seq = self.seq.wrapping_add(1 + missed);
@@ -155,13 +167,6 @@ impl Sampling {
             }
         }
     }
-}
-
-/// Data-ready instants between two readings `gap_us` apart. Rounded: the sensor's clock is off by 1 % and a stamp by
-/// some µs, so the count is right up to fifty periods.
-fn missed(gap_us: u64, period_us: u32) -> u32 {
-    let periods = (gap_us + u64::from(period_us) / 2) / u64::from(period_us);
-    u32::try_from(periods.saturating_sub(1)).unwrap_or(u32::MAX)
 }
 
 async fn tell(event: SensorEvent) {

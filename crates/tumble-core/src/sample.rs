@@ -74,9 +74,72 @@ impl Counts {
     }
 }
 
+/// The sensor's own sample period, by the microcontroller's clock, and what was missed against it.
+///
+/// The sensor's oscillator is off by up to 1 % (sheet), and what feeds an emulated one has a rate of its own. So the period is
+/// the median of the first gaps after a start, and not the nominal one.
+#[derive(Clone, Debug)]
+pub struct Cadence {
+    gaps_us: heapless::Vec<f32, LEARNT_GAPS>,
+    period_us: u32,
+}
+
+/// Gaps that the period is learnt from: 0.16 s at 200 Hz. Half of them may be disturbed.
+const LEARNT_GAPS: usize = 32;
+
+impl Default for Cadence {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Cadence {
+    /// Nothing learnt yet.
+    pub const fn new() -> Self {
+        Self { gaps_us: heapless::Vec::new(), period_us: 0 }
+    }
+
+    /// The period, µs; none while it is learnt.
+    pub fn period_us(&self) -> Option<u32> {
+        (self.period_us > 0).then_some(self.period_us)
+    }
+
+    /// Samples missed in a gap between two readings; none are counted while the period is learnt. Rounded to whole
+    /// periods: a stamp is off by some µs, so the count is right up to hundreds of them.
+    pub fn missed(&mut self, gap_us: u64) -> u32 {
+        let gap_us = u32::try_from(gap_us).unwrap_or(u32::MAX);
+        if self.period_us == 0 {
+            self.learn(gap_us);
+            return 0;
+        }
+        (gap_us.saturating_add(self.period_us / 2) / self.period_us).saturating_sub(1)
+    }
+
+    fn learn(&mut self, gap_us: u32) {
+        let _ = self.gaps_us.push(gap_us as f32);
+        if self.gaps_us.is_full() {
+            let median = crate::estimate::noise::median(&mut self.gaps_us).unwrap_or(1.0);
+            self.period_us = (median as u32).max(1);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cadence_learns_any_rate_and_counts_what_is_missed() {
+        for period in [4950u64, 5000, 9766, 16_000] {
+            let mut cadence = Cadence::new();
+            for k in 0..LEARNT_GAPS as u64 {
+                assert_eq!(cadence.missed(if k % 5 == 0 { 3 * period } else { period + k % 3 }), 0);
+            }
+            assert!(cadence.period_us().is_some_and(|found| u64::from(found).abs_diff(period) < 3));
+            assert_eq!([1, 2, 7, 100].map(|n| cadence.missed(n * period + 2)), [0, 1, 6, 99]);
+            assert_eq!(cadence.missed(period / 3), 0);
+        }
+    }
 
     #[test]
     fn counts_become_si_and_ends_of_range_are_seen() {

@@ -103,7 +103,7 @@ impl<'t, const R: usize, const S: usize> Session<'t, R, S> {
 
     /// What was recorded.
     pub fn tape(&self) -> &Tape<R, S> {
-        &self.tape
+        self.tape
     }
 
     /// One sample; `clipped`: channels at an end of their range ([`crate::tape::Segment::clipped`]).

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::filter::Filter;
 use super::model::Nominal;
-use super::noise::Noise;
+use super::noise::{self, Noise};
 use super::start;
 use super::state::Block;
 use super::sums::{Excess, SegmentNoise};
@@ -28,15 +28,17 @@ const GYRO_BIAS_SIGMA: f32 = 0.01;
 const LEVER_SIGMA_M: f32 = 0.05;
 /// A number is "not observable" where the data bring less than 99 % of what is known of it.
 const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
-/// At least this many passes: three to come near, three to settle the noise, one to confirm.
-const MIN_PASSES: u32 = 7;
+/// At least this many passes: three to come near, one to judge the noise, one to confirm.
+const MIN_PASSES: u32 = 5;
 /// At most this many.
-const MAX_PASSES: u32 = 12;
+const MAX_PASSES: u32 = 20;
 /// Converged when no parameter moved by more than this many of its sigma.
 const CONVERGED: f32 = 0.05;
-/// Passes before noise is judged by residuals, and passes that judge it: then it stands, so that the last converge.
+/// Passes before noise is judged by residuals, and the last that judges it: then it stands, so that the rest converge.
 const SETTLED: u32 = 3;
-const ADAPTING: u32 = 3;
+const LAST_ADAPTING: u32 = 14;
+/// The noise has settled when no part of it changed by more than this share in a pass.
+const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
 /// Width of a narrowed prior in sigmas, and the least sigma (1 or SI) that is believed of an early pass.
@@ -134,7 +136,7 @@ impl<const S: usize> Estimator<S> {
         if !is_finite(&nominal) {
             return Err(Breakdown("estimate"));
         }
-        let converged = self.passes >= MIN_PASSES && self.largest_move() < CONVERGED;
+        let converged = self.passes >= MIN_PASSES && !self.walk.adapting && self.largest_move() < CONVERGED;
         if converged || self.passes >= MAX_PASSES {
             if !self.walk.filter.covariance().diagonal().iter().all(|variance| *variance >= 0.0) {
                 return Err(Breakdown("covariance"));
@@ -142,7 +144,6 @@ impl<const S: usize> Estimator<S> {
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
         }
         self.adapt();
-        self.walk.adapting = self.passes < SETTLED + ADAPTING;
         let mut prior = prior(&self.conditions, &self.start, &nominal);
         if self.passes >= 2 {
             narrow(&mut prior, &self.walk.filter);
@@ -168,9 +169,10 @@ impl<const S: usize> Estimator<S> {
 
     /// Noise as this pass's innovations show it; the first passes are too far from the truth to tell.
     fn adapt(&mut self) {
-        if !(SETTLED..SETTLED + ADAPTING).contains(&self.passes) {
+        if self.passes < SETTLED || !self.walk.adapting {
             return;
         }
+        let before = self.noise;
         let sums = self.walk.sums;
         if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
@@ -185,19 +187,20 @@ impl<const S: usize> Estimator<S> {
             let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
             self.noise.set_stop_variance(variance + excess, sigma, self.conditions.stops);
         }
-        self.scale_motion();
+        let steady = self.scale_motion();
+        self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
     /// out even so is down-weighted by itself, as a Student's t distribution would: `(ν + χ²) / (ν + 2)`.
-    fn scale_motion(&mut self) {
+    /// True if no move's weight changed much.
+    fn scale_motion(&mut self) -> bool {
         let mut hinges: heapless::Vec<f32, S> =
             self.walk.noise.iter().map(|noise| noise.hinge_nis).filter(|nis| nis.is_finite()).collect();
-        hinges.sort_unstable_by(f32::total_cmp);
         if hinges.len() < MIN_HINGES {
-            return;
+            return true;
         }
-        let median = hinges[hinges.len() / 2];
+        let Some(median) = noise::median(&mut hinges) else { return true };
         // A median's standard error is 1/(2 f √n), and the density f of χ²₂ at its median is 1/4.
         let certain = median > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
         let excess = match self.noise.motion_scale > 1.0 || certain {
@@ -205,11 +208,15 @@ impl<const S: usize> Estimator<S> {
             false => 1.0,
         };
         self.noise.motion_scale *= excess;
+        let mut steady = true;
         for noise in &mut self.walk.noise {
             let nis = noise.hinge_nis / excess;
             // Not a number for a move without rests on both sides, which `max` turns into 1.
-            noise.rate_scale = ((STUDENT + nis) / (STUDENT + 2.0)).max(1.0);
+            let scale = ((STUDENT + nis) / (STUDENT + 2.0)).max(1.0);
+            steady &= libm::fabsf(scale - noise.rate_scale) < NOISE_SETTLED * scale;
+            noise.rate_scale = scale;
         }
+        steady
     }
 
     fn estimate<const R: usize>(&self, tape: &Tape<R, S>, nominal: &Nominal, converged: bool) -> Estimate {

@@ -191,19 +191,22 @@ impl Filter {
         }
         self.state += column * (innovation.value / innovation.variance);
         column *= 1.0 / libm::sqrtf(innovation.variance);
-        for j in 0..STATES {
-            let scale = column[j];
-            for i in 0..STATES {
-                self.covariance[(i, j)] -= column[i] * scale;
+        // Slices, because an index into a matrix is checked twice: this loop is most of the microcontroller's work.
+        for (own, scale) in self.covariance.as_mut_slice().chunks_exact_mut(STATES).zip(column.iter()) {
+            for (element, value) in own.iter_mut().zip(column.iter()) {
+                *element -= value * scale;
             }
         }
         innovation
     }
 
     fn covariance_times(&self, row: &Row) -> SVector<f32, STATES> {
-        let mut product = SVector::zeros();
-        for (index, value) in row.entries() {
-            product += self.covariance.column(index) * value;
+        let mut product = SVector::<f32, STATES>::zeros();
+        for (index, coefficient) in row.entries() {
+            let column = self.covariance.as_slice().iter().skip(index * STATES);
+            for (sum, value) in product.iter_mut().zip(column) {
+                *sum += value * coefficient;
+            }
         }
         product
     }

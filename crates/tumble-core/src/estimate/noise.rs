@@ -91,6 +91,14 @@ impl Noise {
         }
     }
 
+    /// Do all parts agree to within a share?
+    pub fn is_near(&self, other: &Self, share: f32) -> bool {
+        let parts = |noise: &Self| {
+            [noise.bias_walk, noise.force_walk, noise.motion_scale, noise.stop_sigma_rad, noise.pivot_sigma_m]
+        };
+        parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))
+    }
+
     /// Bias walk from how rates at the beginning of rests differed from what was expected.
     pub fn set_bias_walk(&mut self, found: f32) {
         self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
@@ -170,12 +178,25 @@ pub fn scatter<const R: usize, const S: usize>(tape: &Tape<R, S>, segment: &Segm
 /// Mean weighted by counts, without values above four times the median: a disturbed rest does not make all noisy.
 fn pooled<const S: usize>(values: &mut Vec<(f32, f32), S>) -> Option<f32> {
     values.retain(|value| value.1 > 0.0 && value.0.is_finite());
-    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let median = values.get(values.len() / 2)?.0;
+    let mut sorted: Vec<f32, S> = values.iter().map(|value| value.0).collect();
+    let median = median(&mut sorted)?;
     let (mut sum, mut weight) = (0.0, 0.0);
     for &(value, count) in values.iter().filter(|value| value.0 <= 4.0 * median) {
         sum += value * count;
         weight += count;
     }
     (weight > 0.0).then(|| sum / weight)
+}
+
+/// The middle of `values`, the upper one of two; none of none. Sorts by insertion: there are some dozens, and the library's
+/// sort takes 5 KB of flash for each type.
+pub fn median(values: &mut [f32]) -> Option<f32> {
+    for end in 1..values.len() {
+        let mut at = end;
+        while at > 0 && values[at - 1] > values[at] {
+            values.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+    values.get(values.len() / 2).copied()
 }
