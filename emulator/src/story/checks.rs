@@ -30,7 +30,7 @@ impl Checks {
         println!("\nWhat must hold:");
         for Check { what, held, detail } in &self.0 {
             let mark = if *held { "ok    " } else { "FAILED" };
-            println!("  {mark}  {what:<52} {detail}");
+            println!("  {mark}  {what:<56} {detail}");
         }
     }
 }

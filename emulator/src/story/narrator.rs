@@ -20,7 +20,8 @@ pub struct Narrator {
     last_ask: String,
     /// An acceptance that waits for the progress line behind it.
     accepted: Option<(f64, String)>,
-    percent: u32,
+    /// What it is busy with, and how far in quarters.
+    busy: Option<(String, u32)>,
 }
 
 impl Narrator {
@@ -133,9 +134,11 @@ impl Narrator {
 
     fn busy(&mut self, line: &Line) -> Option<String> {
         let percent = line.number("percent").unwrap_or(0.0) as u32;
-        let step = percent / 25;
-        let told = std::mem::replace(&mut self.percent, step);
-        (percent == 0 || step > told).then(|| format!("busy: {} {percent} %", line.value("what").unwrap_or("")))
+        let now = (line.value("what").unwrap_or("").to_owned(), percent / 25);
+        let is_news = self.busy.as_ref().is_none_or(|told| *told != now);
+        let text = format!("busy: {} {percent} %", now.0);
+        self.busy = Some(now);
+        is_news.then_some(text)
     }
 }
 

@@ -9,9 +9,6 @@ use crate::world::{PhysicalSample, STANDARD_GRAVITY_MPS2, SensorWorld};
 
 /// Where the recording says nothing of temperature.
 const ROOM_DEGC: f64 = 25.0;
-/// Spacing of what fills the time before and after the recording.
-const FILL_S: f64 = 0.005;
-
 /// What the sensor feels now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mode {
@@ -28,6 +25,8 @@ enum Mode {
 struct Inside {
     mode: Mode,
     rows: Vec<Taken>,
+    /// Spacing of what fills the time before and after the recording: its own, from which the firmware learns what to expect.
+    fill_s: f64,
 }
 
 /// A handle; clones are the same.
@@ -47,8 +46,10 @@ impl ReplayWorld {
                 temperature_degc: row.temp_c.unwrap_or(ROOM_DEGC),
             },
         };
-        let rows = recording.rows.iter().map(row).collect();
-        Self(Arc::new(Mutex::new(Inside { mode: Mode::Before, rows })))
+        let rows: Vec<Taken> = recording.rows.iter().map(row).collect();
+        let span_s = rows.last().map_or(0.0, |row| row.t_s);
+        let fill_s = (span_s / (rows.len().max(2) - 1) as f64).max(1e-3);
+        Self(Arc::new(Mutex::new(Inside { mode: Mode::Before, rows, fill_s })))
     }
 
     fn inside(&self) -> MutexGuard<'_, Inside> {
@@ -87,7 +88,7 @@ impl SensorWorld for ReplayWorld {
     fn next_sample_time(&mut self, after_s: f64) -> Option<f64> {
         let inside = self.inside();
         Some(match inside.mode {
-            Mode::Before | Mode::After => ((after_s / FILL_S).floor() + 1.0) * FILL_S,
+            Mode::Before | Mode::After => ((after_s / inside.fill_s).floor() + 1.0) * inside.fill_s,
             Mode::Silent => f64::INFINITY,
             Mode::Playing(start_s) => {
                 let next = inside.rows.partition_point(|row| start_s + row.t_s <= after_s);

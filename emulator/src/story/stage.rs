@@ -3,7 +3,7 @@
 
 use std::mem::take;
 
-use tumble_sim::person::Clumsiness;
+use tumble_sim::person::Note;
 use tumble_sim::{Person, PersonConfig, World, WorldConfig, motion::Hands};
 
 use super::Failure;
@@ -21,15 +21,14 @@ const CLOCK_ERROR: f64 = 0.01;
 /// Who plays.
 #[derive(Debug, Clone)]
 pub struct Cast {
-    /// Of sensor, hands, noise and decisions.
+    /// Of sensor, hands and noise.
     pub seed: u64,
     /// Turns end by eye and not against a fence.
     pub by_hand: bool,
-    pub clumsiness: Clumsiness,
+    /// Pace, mishaps, decisions, and what it types of itself.
+    pub person: PersonConfig,
     pub telling: Telling,
     pub options: BoardOptions,
-    /// What the person types of itself; none to leave it to the acts.
-    pub start_words: Option<String>,
 }
 
 impl Cast {
@@ -37,14 +36,8 @@ impl Cast {
     pub fn new(seed: u64, by_hand: bool) -> Self {
         let person = if by_hand { PersonConfig::by_hand(seed) } else { PersonConfig::fenced(seed) };
         let sensor = SensorOptions { clock_error: CLOCK_ERROR, ..SensorOptions::default() };
-        Self {
-            seed,
-            by_hand,
-            clumsiness: Clumsiness::default(),
-            telling: Telling::Nothing,
-            options: BoardOptions { sensor, ..BoardOptions::default() },
-            start_words: person.start_words,
-        }
+        let options = BoardOptions { sensor, ..BoardOptions::default() };
+        Self { seed, by_hand, person, telling: Telling::Nothing, options }
     }
 
     /// Sheet errors, noise, delays and warming of the sensor, a table tilted by 1.5°, the sensor (3, 2, 1) cm off the axis.
@@ -56,15 +49,6 @@ impl Cast {
         }
         Ok(World::new(&config)?)
     }
-
-    fn person(&self) -> Result<Person, Failure> {
-        let person = PersonConfig {
-            clumsiness: self.clumsiness,
-            start_words: self.start_words.clone(),
-            ..PersonConfig::fenced(self.seed)
-        };
-        Ok(Person::new(person)?)
-    }
 }
 
 pub struct Stage {
@@ -75,6 +59,8 @@ pub struct Stage {
     /// Everything the board has said but frames.
     pub lines: Vec<Line>,
     pub frames: Frames,
+    /// Everything the person has noted.
+    pub notes: Vec<Note>,
     ear: Assembler,
     led_seen: usize,
 }
@@ -86,10 +72,11 @@ impl Stage {
         Ok(Self {
             board,
             theatre,
-            person: cast.person()?,
+            person: Person::new(cast.person.clone())?,
             narrator: Narrator::new(cast.telling),
             lines: Vec::new(),
             frames: Frames::default(),
+            notes: Vec::new(),
             ear: Assembler::default(),
             led_seen: 0,
         })
@@ -135,6 +122,7 @@ impl Stage {
     fn tell_notes(&mut self) {
         for note in self.person.take_notes() {
             self.narrator.person(&note);
+            self.notes.push(note);
         }
     }
 
