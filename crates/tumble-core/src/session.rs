@@ -35,8 +35,8 @@ pub enum Effect {
 /// Room for what one input can bring: the procedure gives at most 16 actions, of which an estimate's end adds as many.
 const EFFECTS: usize = 40;
 
-/// Records walked in one slice of work: some 2 ms at 96 MHz (`cargo xtask bench`).
-const SLICE_RECORDS: usize = 6;
+/// Records walked in one slice of work: one or two steps of the filter.
+const SLICE_RECORDS: usize = 12;
 
 /// Everything a session needs, with room for `R` records in `S` segments. The tape is lent: it is most of the memory, all
 /// zero when new, and so a static that costs no flash.

@@ -189,11 +189,16 @@ impl Filter {
             innovation.value -= value * self.state[index];
             innovation.variance += value * column[index];
         }
-        self.state += column * (innovation.value / innovation.variance);
-        column *= 1.0 / libm::sqrtf(innovation.variance);
-        // Slices, because an index into a matrix is checked twice: this loop is most of the microcontroller's work.
-        for (own, scale) in self.covariance.as_mut_slice().chunks_exact_mut(STATES).zip(column.iter()) {
-            for (element, value) in own.iter_mut().zip(column.iter()) {
+        let step = innovation.value / innovation.variance;
+        let root = 1.0 / libm::sqrtf(innovation.variance);
+        let column = column.as_mut_slice();
+        for (state, gain) in self.state.as_mut_slice().iter_mut().zip(&*column) {
+            *state += gain * step;
+        }
+        column.iter_mut().for_each(|element| *element *= root);
+        // Slices, because a matrix's own iterators and indices cost four times as much: this loop is most of the work.
+        for (own, scale) in self.covariance.as_mut_slice().chunks_exact_mut(STATES).zip(&*column) {
+            for (element, value) in own.iter_mut().zip(&*column) {
                 *element -= value * scale;
             }
         }
@@ -202,9 +207,10 @@ impl Filter {
 
     fn covariance_times(&self, row: &Row) -> SVector<f32, STATES> {
         let mut product = SVector::<f32, STATES>::zeros();
+        let sums = product.as_mut_slice();
+        let covariance = self.covariance.as_slice();
         for (index, coefficient) in row.entries() {
-            let column = self.covariance.as_slice().iter().skip(index * STATES);
-            for (sum, value) in product.iter_mut().zip(column) {
+            for (sum, value) in sums.iter_mut().zip(&covariance[index * STATES..(index + 1) * STATES]) {
                 *sum += value * coefficient;
             }
         }
