@@ -41,6 +41,9 @@ const LAST_ADAPTING: u32 = 14;
 const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
+/// Sigmas from which a walk is believed in. The sum of a session's 17 squared innovations is χ²₁₇ without one, and exceeds its
+/// mean by four of its sigma (40.3) once in 800 sessions.
+const WALK_CERTAIN: f32 = 4.0;
 /// Width of a narrowed prior in sigmas, and the least sigma (1 or SI) that is believed of an early pass.
 const NARROWED: f32 = 30.0;
 const NARROWEST: f32 = 2e-5;
@@ -103,6 +106,8 @@ pub struct Estimator<const S: usize> {
     start: Nominal,
     walk: Walk<S>,
     passes: u32,
+    /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
+    bias_wanders: bool,
 }
 
 /// Where a run stands.
@@ -122,7 +127,7 @@ impl<const S: usize> Estimator<S> {
         let start = start::nominal(tape, conditions.gravity_mps2);
         let mut walk = Walk::new(start, conditions.gravity_mps2);
         walk.restart(start, prior(&conditions, &start, &start));
-        Self { conditions, noise, start, walk, passes: 0 }
+        Self { conditions, noise, start, walk, passes: 0, bias_wanders: false }
     }
 
     /// Walks up to `records` further.
@@ -174,6 +179,8 @@ impl<const S: usize> Estimator<S> {
         }
         let before = self.noise;
         let sums = self.walk.sums;
+        let probable = sums.rate_walk.value().is_some_and(|(value, sigma)| value > SIGNIFICANT * sigma);
+        self.bias_wanders = probable || self.noise.has_bias_walk();
         if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
         }
@@ -232,7 +239,7 @@ impl<const S: usize> Estimator<S> {
             }
         };
         let mut gyroscope = triad(&nominal.gyro, 12);
-        if self.noise.has_bias_walk() {
+        if self.bias_wanders {
             // The filter's bias is the last; the session's is the mean, and its sigma tells how far it wandered.
             let (mean, spread) = start::resting_rate(tape);
             gyroscope.triad.bias = mean;
@@ -290,11 +297,11 @@ impl<const S: usize> Estimator<S> {
     }
 }
 
-/// How much more a bias wanders than it is taken to. A walk is not believed in before it is certain (99 %): to believe in
-/// one that is not there costs the accelerometer a factor of four.
+/// How much more a bias wanders than it is taken to. A walk is not believed in before it is certain: to believe in one that
+/// is not there costs the accelerometer a factor of four.
 fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
     let (value, sigma) = excess.value()?;
-    (believed || value > SIGNIFICANT * sigma).then_some(value)
+    (believed || value > WALK_CERTAIN * sigma).then_some(value)
 }
 
 /// The prior about a nominal: its mean stays at the start, whatever the nominal has become.

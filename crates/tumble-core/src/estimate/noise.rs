@@ -16,7 +16,7 @@ const FENCE_FLOOR: f32 = 0.005 * DEGREE_RAD;
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
 const BY_HAND_FLOOR: f32 = 0.25 * DEGREE_RAD;
 /// How many stops the expectation is worth.
-const STOPS_EXPECTED: f32 = 6.0;
+const STOPS_EXPECTED: f32 = 3.0;
 /// What a stop against a fence is taken for before its innovations are seen.
 const FENCED: f32 = 0.05 * DEGREE_RAD;
 /// A face of a box that its owner calls square, rad: 1 µm on 5 cm.
