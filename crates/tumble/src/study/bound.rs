@@ -6,7 +6,7 @@
 //!
 //! - frame n, `φ ← φ + R (δM M⁻¹ω − M δb) dt − δΩ dt`, with the gyroscope's true density as process noise, `R M Mᵀ Rᵀ q dt`;
 //! - at rest the attitude stands, the rate is seen with density q and gravity with density r;
-//! - in turns gravity is seen through the lever every [`STEP_S`], in moves by hand not at all;
+//! - in turns gravity is seen through the lever every `STEP_S`, in moves by hand not at all;
 //! - faces of a square box lie on the plate exactly, stops have the simulation's own spread.
 //!
 //! Assumed known, which no estimator is told: both densities, when the box rests to the sample, that the axis of all turns
