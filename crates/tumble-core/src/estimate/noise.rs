@@ -125,7 +125,7 @@ impl Noise {
     }
 
     /// Stop variance from the closures' innovations: `found` with its own sigma, weighed against the expectation, which
-    /// counts as [`STOPS_EXPECTED`] stops seen (a scaled inverse χ² prior). A dozen closures alone would often deny that stops
+    /// counts as `STOPS_EXPECTED` stops seen (a scaled inverse χ² prior). A dozen closures alone would often deny that stops
     /// err at all.
     pub fn set_stop_variance(&mut self, found: f32, found_sigma: f32, stops: TurnStops) {
         let (floor, expected) = match stops {
