@@ -6,9 +6,11 @@ pub mod group;
 pub mod judge;
 pub mod model;
 pub mod noise;
+pub mod six_face;
 pub mod start;
 pub mod state;
 pub mod sums;
+pub mod two_step;
 pub mod walk;
 
 pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};
