@@ -5,6 +5,8 @@
 pub struct Line {
     pub t_s: f64,
     pub text: String,
+    /// Raw frames that came before it, where somebody counts: the board's lines and frames have one order.
+    pub after_raw_frames: usize,
 }
 
 impl Line {
@@ -58,7 +60,7 @@ impl Assembler {
         }
         let bytes = std::mem::take(&mut self.0);
         let text = String::from_utf8_lossy(&bytes).trim_end_matches('\r').to_owned();
-        Some(Line { t_s, text })
+        Some(Line { t_s, text, after_raw_frames: 0 })
     }
 
     /// What has come of a line that is not whole, and is dropped.

@@ -110,7 +110,8 @@ impl Stage {
         Ok(stopped)
     }
 
-    fn take_in(&mut self, line: Line) {
+    fn take_in(&mut self, mut line: Line) {
+        line.after_raw_frames = self.frames.raw.len();
         if line.is_frame() {
             self.frames.take_in(&line);
         } else {
