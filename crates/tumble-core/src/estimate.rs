@@ -6,6 +6,7 @@ pub mod group;
 pub mod judge;
 pub mod model;
 pub mod noise;
+pub mod prior;
 pub mod six_face;
 pub mod start;
 pub mod state;

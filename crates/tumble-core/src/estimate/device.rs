@@ -6,9 +6,9 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-use super::filter::Filter;
 use super::model::Nominal;
 use super::noise::{self, Noise};
+use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
 use super::sums::{Excess, SegmentNoise};
@@ -18,14 +18,6 @@ use crate::motion::segmenter::mean_force;
 use crate::procedure::{BoxFaces, TurnStops};
 use crate::tape::Tape;
 
-/// Prior of a correction element, 1: sheet scale 3 %, cross-axis 2 %, and a chip that sits askew in its box by 3°.
-pub const CORRECTION_SIGMA: f32 = 0.06;
-/// Prior of an accelerometer bias, m/s²: sheet 80 mg.
-const ACCEL_BIAS_SIGMA: f32 = 0.8;
-/// Prior of a gyroscope bias about the mean of all rests, rad/s: far wider than what rests leave (0.1 mrad/s).
-const GYRO_BIAS_SIGMA: f32 = 0.01;
-/// Prior of the lever arm, m: a sensor sits in a box of some 10 cm.
-const LEVER_SIGMA_M: f32 = 0.05;
 /// A number is "not observable" where the data bring less than 99 % of what is known of it.
 const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
 /// At least this many passes: three to come near, one to judge the noise, one to confirm.
@@ -44,9 +36,6 @@ const SIGNIFICANT: f32 = 2.326;
 /// Sigmas from which a walk is believed in. The sum of a session's 17 squared innovations is χ²₁₇ without one, and exceeds its
 /// mean by four of its sigma (40.3) once in 800 sessions.
 const WALK_CERTAIN: f32 = 4.0;
-/// Width of a narrowed prior in sigmas, and the least sigma (1 or SI) that is believed of an early pass.
-const NARROWED: f32 = 30.0;
-const NARROWEST: f32 = 2e-5;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
 /// Degrees of freedom of the Student's t distribution that moves are taken to follow: heavy tails, gentle weights.
@@ -126,7 +115,7 @@ impl<const S: usize> Estimator<S> {
         let noise = Noise::from_rests(tape, conditions.stops, conditions.faces);
         let start = start::nominal(tape, conditions.gravity_mps2);
         let mut walk = Walk::new(start, conditions.gravity_mps2);
-        walk.restart(start, prior(&conditions, &start, &start));
+        walk.restart(start, prior::prior(&conditions, &start, &start));
         Self { conditions, noise, start, walk, passes: 0, bias_wanders: false }
     }
 
@@ -137,8 +126,8 @@ impl<const S: usize> Estimator<S> {
             return Ok(Progress::Working((self.passes as f32 + share) / MIN_PASSES as f32));
         }
         self.passes += 1;
-        let nominal = improved(self.walk.nominal(), &self.walk.filter);
-        if !is_finite(&nominal) {
+        let nominal = prior::improved(self.walk.nominal(), &self.walk.filter);
+        if !prior::is_finite(&nominal) {
             return Err(Breakdown("estimate"));
         }
         let converged = self.passes >= MIN_PASSES && !self.walk.adapting && self.largest_move() < CONVERGED;
@@ -149,9 +138,9 @@ impl<const S: usize> Estimator<S> {
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
         }
         self.adapt();
-        let mut prior = prior(&self.conditions, &self.start, &nominal);
+        let mut prior = prior::prior(&self.conditions, &self.start, &nominal);
         if self.passes >= 2 {
-            narrow(&mut prior, &self.walk.filter);
+            prior::narrow(&mut prior, &self.walk.filter);
         }
         self.walk.restart(nominal, prior);
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
@@ -302,59 +291,4 @@ impl<const S: usize> Estimator<S> {
 fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
     let (value, sigma) = excess.value()?;
     (believed || value > WALK_CERTAIN * sigma).then_some(value)
-}
-
-/// The prior about a nominal: its mean stays at the start, whatever the nominal has become.
-fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Filter {
-    let mut filter = Filter::default();
-    let mut set = |block, sigma: f32, start: &Triad, now: &Triad| {
-        for i in 0..3 {
-            for j in 0..3 {
-                // Frame b is the accelerometer's own where no box gives one: its correction is lower-triangular.
-                let fixed = block == Block::AccelCorrection && j > i && conditions.frame() == Frame::Accelerometer;
-                let mean = start.correction[(i, j)] - now.correction[(i, j)];
-                filter.reset(block, 3 * i + j, mean, if fixed { 0.0 } else { sigma });
-            }
-        }
-    };
-    set(Block::GyroCorrection, CORRECTION_SIGMA, &start.gyro, &nominal.gyro);
-    set(Block::AccelCorrection, CORRECTION_SIGMA, &start.accel, &nominal.accel);
-    for axis in 0..3 {
-        filter.reset(Block::GyroBias, axis, start.gyro.bias[axis] - nominal.gyro.bias[axis], GYRO_BIAS_SIGMA);
-        filter.reset(Block::AccelBias, axis, start.accel.bias[axis] - nominal.accel.bias[axis], ACCEL_BIAS_SIGMA);
-        filter.reset(Block::Lever, axis, 0.0, LEVER_SIGMA_M);
-    }
-    filter
-}
-
-/// Replaces the prior of what is well determined by one about the last pass's result, [`NARROWED`] times its sigma wide: it
-/// adds a thousandth to what the data say, and spares `f32` the collapse of a variance by seven orders of magnitude.
-fn narrow(prior: &mut Filter, posterior: &Filter) {
-    for block in [Block::GyroCorrection, Block::AccelCorrection, Block::AccelBias, Block::GyroBias] {
-        for (offset, index) in block.range().enumerate() {
-            let found = posterior.covariance()[(index, index)].max(0.0);
-            let narrowed = NARROWED * libm::sqrtf(found).max(NARROWEST);
-            if narrowed * narrowed < prior.covariance()[(index, index)] {
-                prior.reset(block, offset, 0.0, narrowed);
-            }
-        }
-    }
-}
-
-fn improved(nominal: &Nominal, filter: &Filter) -> Nominal {
-    let triad = |triad: &Triad, correction: Block, bias: Block| Triad {
-        bias: triad.bias + filter.vector(bias, 0),
-        correction: Matrix3::from_fn(|i, j| triad.correction[(i, j)] + filter.state()[correction.start() + 3 * i + j]),
-    };
-    Nominal {
-        gyro: triad(&nominal.gyro, Block::GyroCorrection, Block::GyroBias),
-        accel: triad(&nominal.accel, Block::AccelCorrection, Block::AccelBias),
-        earth_rad_s: nominal.earth_rad_s + filter.vector(Block::Earth, 0),
-    }
-}
-
-fn is_finite(nominal: &Nominal) -> bool {
-    [nominal.gyro, nominal.accel]
-        .iter()
-        .all(|triad| triad.bias.iter().chain(triad.correction.iter()).all(|value| value.is_finite()))
 }

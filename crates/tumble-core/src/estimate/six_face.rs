@@ -26,8 +26,9 @@
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use super::device::{Breakdown, CORRECTION_SIGMA, Conditions};
+use super::device::{Breakdown, Conditions};
 use super::noise::Noise;
+use super::prior::CORRECTION_SIGMA;
 use super::start;
 use crate::DEGREE_RAD;
 use crate::calibration::{Triad, TriadEstimate};

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, SVector, Vector3};
 
 use super::{Pattern, Variant, other};
-use crate::estimate::device::CORRECTION_SIGMA;
+use crate::estimate::prior::CORRECTION_SIGMA;
 use crate::estimate::six_face::{Real, SixFace, real};
 
 /// Width of K's prior about step 1's, in that one's sigmas: it adds a thousandth to what the turns say.

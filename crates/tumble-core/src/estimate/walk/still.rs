@@ -1,0 +1,165 @@
+//! What a rest tells: gravity, the resting rate, the plate and the fence.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+
+use super::{Visit, Walk};
+use crate::estimate::model::{self, Observation};
+use crate::estimate::noise::{self, Noise};
+use crate::estimate::state::Block;
+use crate::face::Face;
+use crate::motion::path::WHOLE_TURN;
+use crate::tape::{Record, Segment, Tape};
+
+/// How well a face's contact with the table repeats, rad: 1 µm over 5 cm.
+const CONTACT_SIGMA: f32 = 20e-6;
+/// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
+const EARTH_SIGMA: f32 = 5e-5;
+/// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
+const LEVEL_SIGMA: f32 = 0.1;
+
+impl<const S: usize> Walk<S> {
+    pub(super) fn enter_still<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, noise: &Noise) {
+        let (first, end) = (usize::from(segment.first), usize::from(segment.end));
+        let force = crate::motion::segmenter::mean_force(tape, first, end);
+        if !noise::is_solid(segment, noise.quiet_variance) {
+            let own = noise::scatter(tape, segment).force / noise.force_density;
+            self.noise[self.segment].force_scale = own.max(1.0);
+        }
+        let scale = self.noise[self.segment].force_scale;
+        let variance = noise.force_density * scale / (segment.duration_s() * self.gravity * self.gravity);
+        self.level(&self.nominal.accel.compensate(&force), variance, noise);
+    }
+
+    /// What a face on the table tells, after its gravity has narrowed the attitude: a plate is so sharp an observation
+    /// that against a wide covariance it would be lost in `f32`.
+    pub(super) fn leave_still(&mut self, face: Option<Face>, noise: &Noise) {
+        if let Some(face) = face {
+            self.plate(face, noise);
+            self.stop(face, noise);
+        } else {
+            self.visit = None;
+        }
+    }
+
+    /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
+    /// linearisation but the still's own noise (0.1 mrad, whose square is nothing).
+    fn level(&mut self, force: &Vector3<f32>, variance: f32, noise: &Noise) {
+        let turn = model::levelling(&(self.attitude * force));
+        self.attitude = UnitQuaternion::new_normalize((turn * self.attitude).into_inner());
+        let before = core::mem::replace(&mut self.level_variance, variance);
+        if !self.aligned {
+            self.align();
+            return;
+        }
+        let turn = turn.scaled_axis();
+        self.filter.shift(Block::Attitude, &-turn);
+        if let Some(hinge) = self.hinge.take() {
+            let expected = before + variance + noise.rate_density * noise.motion_scale * self.move_s;
+            self.noise[hinge].hinge_nis = turn.norm_squared() / expected;
+        }
+    }
+
+    /// Starts anew: heading is zero here by definition, and what is known in frame n is known no longer.
+    fn align(&mut self) {
+        self.aligned = true;
+        self.filter.reset(Block::Attitude, 0, 0.0, LEVEL_SIGMA);
+        self.filter.reset(Block::Attitude, 1, 0.0, LEVEL_SIGMA);
+        self.filter.reset(Block::Attitude, 2, 0.0, 0.0);
+        self.table_known = false;
+        self.chains += 1;
+        if self.chains > 1 {
+            // The first still's heading is lost, and with it where the Earth's rotation points.
+            self.nominal.earth_rad_s = Vector3::zeros();
+        }
+        for axis in 0..3 {
+            self.filter.reset(Block::Earth, axis, -self.nominal.earth_rad_s[axis], EARTH_SIGMA);
+        }
+        self.filter.reset(Block::Fence, 0, 0.0, 0.0);
+    }
+
+    fn plate(&mut self, face: Face, noise: &Noise) {
+        let Some(sigma) = noise.facet_sigma_rad else { return };
+        let axes = [(face.axis() + 1) % 3, (face.axis() + 2) % 3];
+        let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+        if self.visit.is_none_or(|visit| visit.face != face) {
+            (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
+        }
+        let plane = axes.map(|axis| self.attitude * unit(axis));
+        let variance = CONTACT_SIGMA * CONTACT_SIGMA;
+        let plate = model::plate(&(self.attitude * face.normal()), &plane);
+        for (axis, Observation { residual, row }) in plate.into_iter().enumerate() {
+            if self.table_known {
+                let innovation = self.filter.observe(&row.negated().with(Block::Table, axis, 1.0), residual, variance);
+                self.sums.facet.take(&innovation, 1.0);
+            } else {
+                self.filter.copy_to(Block::Table, axis, &row, residual, variance);
+            }
+        }
+        self.table_known = true;
+    }
+
+    fn stop(&mut self, face: Face, noise: &Noise) {
+        let normal = self.attitude * face.normal();
+        let variance = noise.stop_sigma_rad * noise.stop_sigma_rad;
+        if let Some(visit) = self.visit.as_mut().filter(|visit| visit.face == face) {
+            let turned = libm::fabsf(visit.turned_rad);
+            let observation = model::fence(&self.attitude, &visit.first_stop, &normal);
+            if turned > core::f32::consts::PI && libm::fabsf(observation.residual) < WHOLE_TURN {
+                visit.turned_rad = 0.0;
+                self.close(&observation, variance);
+            }
+            // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
+            if turned > 2.0 * WHOLE_TURN {
+                return;
+            }
+        }
+        self.filter.copy_to(Block::Fence, 0, &model::heading(&normal), 0.0, variance);
+        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0 });
+    }
+
+    fn close(&mut self, observation: &Observation, variance: f32) {
+        let innovation = self.filter.observe(&observation.row, observation.residual, variance);
+        // The first stop's own error, within the fence state, is a stop's as much as this one's.
+        self.sums.stop.take(&innovation, 2.0);
+        self.sums.closed.0 += observation.residual * observation.residual;
+        self.sums.closed.1 += 1.0;
+    }
+
+    pub(super) fn rest(&mut self, segment: &Segment, record: &Record, noise: &Noise) {
+        let solid = noise::is_solid(segment, noise.quiet_variance);
+        if !solid {
+            self.turn(record, None);
+            core::mem::take(&mut self.group).propagate(&mut self.filter, noise.rate_density);
+        }
+        let to_n = self.attitude.to_rotation_matrix().into_inner();
+        let variance = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
+        let parts = self.nominal.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
+        for axis in 0..3 {
+            let Observation { residual, row } = parts.observation(axis, self.gravity, None);
+            let innovation = self.filter.observe(&row, residual, variance);
+            if self.record > 0 {
+                self.sums.rest.0 += innovation.nis();
+                self.sums.rest.1 += 1.0;
+            } else if axis == 2 && self.last_rest_us > 0 {
+                self.sums.force_walk.take(&innovation, since);
+            }
+        }
+        if solid {
+            self.rest_rate(segment, record, &to_n.transpose(), noise);
+        }
+    }
+
+    fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
+        let variance = noise.rate_density / record.dt_s;
+        let first = self.record == 0;
+        let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
+        for Observation { residual, row } in self.nominal.rest_rate(record, to_b) {
+            let innovation = self.filter.observe(&row, residual, variance);
+            if first && self.last_rest_us > 0 {
+                self.sums.rate_walk.take(&innovation, since);
+            }
+        }
+        self.last_rest_us = segment.end_us;
+    }
+}
