@@ -1,16 +1,16 @@
 //! The device path on the microcontroller and on the host are one arithmetic: from the very samples that the board had, the
-//! host's tool computes the very numbers that the board said.
+//! host's tool computes the very numbers that the board said, bit for bit.
 
 #[path = "common/firmware.rs"]
 mod firmware;
 
-use emulator::story::acts;
-use emulator::story::parameters::Parameter;
+use std::path::Path;
+
+use emulator::story::narrator::Telling;
 use emulator::story::stage::{Cast, Stage};
-use tumble::calibrate::Session;
-use tumble::recording::{BoxFaces, Reading, TurnStops};
+use emulator::story::{acts, host_path, replay};
+use tumble::recording::{BoxFaces, TurnStops};
 use tumble_core::estimate::Conditions;
-use tumble_core::sample::Ranges;
 use tumble_sim::PersonConfig;
 
 #[test]
@@ -25,34 +25,26 @@ fn board_and_host_compute_the_same() {
     stage.person.instruct(now_s, "calibrate fenced square single");
     let session = acts::calibrate(&mut stage, from).expect("it ends");
     assert!(session.is_accepted(), "{}: {:?}", session.verdict, session.reasons);
-
-    // Frames and lines come from one task in one order, so these are the session's samples.
-    let place = |pattern: &str| session.lines.iter().find(|line| line.says(pattern)).map(|line| line.after_raw_frames);
-    let first = place("@ok command=calibrate").expect("it began");
-    let end = place("@busy what=estimate").expect("it computed");
-    assert_eq!(stage.frames.damaged, Vec::<String>::new());
-    let frames: Vec<_> = stage.frames.raw[first..end].iter().map(|(_, frame)| frame).collect();
-    assert!(frames.windows(2).all(|pair| pair[1].seq == pair[0].seq + 1), "a frame is missing");
-    let readings: Vec<Reading> = frames
-        .iter()
-        .map(|frame| Reading {
-            sample: Ranges::WIDEST.to_si(frame.t_us, &frame.counts),
-            clipped: frame.counts.clipped(),
-        })
-        .collect();
-    assert!(readings.len() > 10_000, "{}", readings.len());
+    let frames = host_path::session_frames(&session.lines, &stage.frames).expect("every sample was streamed");
+    assert!(frames.len() > 10_000, "{}", frames.len());
     let conditions = Conditions { stops: TurnStops::Fenced, faces: BoxFaces::Square, ..Conditions::CAUTIOUS };
-    let host = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions }.replay(&mut |_| {});
-    let calibration = host.calibration.expect("numbers");
-    for parameter in calibration.parameters() {
-        let said = session.parameters.get(parameter.name).expect("the board said it");
-        let computed = Parameter {
-            name: parameter.name.to_owned(),
-            value: parameter.observable.then_some(parameter.value),
-            sigma: parameter.sigma.filter(|_| parameter.observable),
-            unit: parameter.unit.to_owned(),
-            observable: parameter.observable,
-        };
-        assert_eq!(*said, computed);
+    assert_eq!(host_path::compute(&frames, conditions).expect("numbers"), session.parameters);
+}
+
+#[test]
+fn a_real_recording_gives_the_same_on_both() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/recordings/imucal_ferraris_session.csv");
+    if !file.exists() {
+        println!("skipped: {} is not here", file.display());
+        return;
+    }
+    let replayed = replay::replay(firmware::elf(), &file, Telling::Nothing).expect("a verdict");
+    assert!(replayed.is_accepted(), "{}: {:?}", replayed.verdict, replayed.reasons);
+    assert_eq!(replayed.same_on_host, Some(true));
+    // Published: each turn is 360°, and the raw integrals are 369.97, 353.69 and 359.33°.
+    for (axis, published) in [("xx", 0.9730), ("yy", 1.0178), ("zz", 1.0019)] {
+        let name = format!("gyro_correction_{axis}");
+        let value = replayed.parameters.get(&name).and_then(|parameter| parameter.value).expect("observable");
+        assert!((f64::from(value) - published).abs() < 0.005, "{name} = {value}, published {published}");
     }
 }

@@ -107,5 +107,8 @@ fn play(elf: &[u8], options: &Options) -> Result<(), String> {
     } else {
         replayed.print();
     }
+    if replayed.same_on_host == Some(false) {
+        return Err("board and host compute different numbers from the same samples".to_owned());
+    }
     if replayed.is_accepted() { Ok(()) } else { Err(format!("the board judged: {}", replayed.verdict)) }
 }

@@ -7,6 +7,7 @@
 pub mod acts;
 pub mod checks;
 pub mod frames;
+pub mod host_path;
 pub mod inertial;
 pub mod levelling;
 pub mod line;

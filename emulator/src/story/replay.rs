@@ -3,9 +3,13 @@
 use std::path::Path;
 
 use serde_json::json;
+use tumble::calibrate::conditions;
 use tumble::recording::Recording;
+use tumble_core::estimate::Conditions;
 
 use super::Failure;
+use super::frames::Frames;
+use super::host_path;
 use super::line::{Assembler, Line};
 use super::narrator::{Narrator, Telling};
 use super::parameters::{Parameter, Parameters};
@@ -30,6 +34,9 @@ pub struct Replayed {
     pub played: (usize, usize),
     pub virtual_s: f64,
     pub estimate_s: f64,
+    /// Whether the host's tool makes the same numbers, to the last bit, of the samples that the board had; none where a frame of
+    /// them was dropped.
+    pub same_on_host: Option<bool>,
 }
 
 struct Player {
@@ -38,13 +45,18 @@ struct Player {
     narrator: Narrator,
     ear: Assembler,
     lines: Vec<Line>,
+    frames: Frames,
 }
 
 impl Player {
     fn step(&mut self, seconds: f64) -> Result<(), Failure> {
         self.board.run_for(seconds)?;
         for (t_s, byte) in self.board.serial_read_timed() {
-            if let Some(line) = self.ear.push(t_s, byte) {
+            let Some(mut line) = self.ear.push(t_s, byte) else { continue };
+            line.after_raw_frames = self.frames.raw.len();
+            if line.is_frame() {
+                self.frames.take_in(&line);
+            } else {
                 self.narrator.board(&line);
                 self.lines.push(line);
             }
@@ -87,18 +99,12 @@ impl Player {
 /// Reads the recording and plays it to the firmware.
 pub fn replay(elf: &[u8], file: &Path, telling: Telling) -> Result<Replayed, Failure> {
     let recording = Recording::read(file).map_err(|error| Failure(error.to_string()))?;
-    let world = ReplayWorld::new(&recording);
-    let board = Board::new(elf, BoardOptions::default(), Box::new(world.clone()))?;
-    let (narrator, ear) = (Narrator::new(telling), Assembler::default());
-    let mut player = Player { board, world, narrator, ear, lines: Vec::new() };
-    let hello = player.until(0, &["@hello"], BOOT_S, STEP_S)?;
-    let hello = hello.ok_or_else(|| Failure("the board did not say hello within a second".to_owned()))?;
-    player.until(0, &[], hello.t_s.max(BOOT_S), STEP_S)?;
-    let end_s = start(&mut player, &recording)?;
+    let mut player = boot(elf, &recording, telling)?;
     let from = player.lines.len();
+    let end_s = start(&mut player, &recording)?;
     // Either the board has all that it asks for before the recording ends, or it is told to finish.
     let itself = player.until(from, &["@busy what=estimate", "@result"], end_s + 1e-5, STEP_S)?;
-    let stopped_s = player.board.now_s();
+    let left_s = end_s - player.board.now_s();
     player.world.be_silent();
     player.follow();
     if itself.is_none() {
@@ -106,23 +112,44 @@ pub fn replay(elf: &[u8], file: &Path, telling: Telling) -> Result<Replayed, Fai
     }
     player.world.stay_at_the_end();
     player.follow();
-    let (begun_s, whole_s) =
-        (player.board.now_s(), recording.rows.last().map_or(0.0, |row| row.t_s) - recording.origin_s());
+    let begun_s = player.board.now_s();
     let result = player.until(from, &["@result"], begun_s + ESTIMATE_S, STEP_S)?;
     let result = result.ok_or_else(|| hung(&player.lines))?;
     let estimate_s = player.board.now_s() - begun_s;
     player.until(player.lines.len(), &["@stored", "@ask"], player.board.now_s() + ANSWER_S, STEP_S)?;
     let lines = &player.lines[from..];
-    let started_s = end_s - whole_s;
-    let played = recording.rows.iter().filter(|row| started_s + row.t_s - recording.origin_s() <= stopped_s).count();
+    let parameters = Parameters::read(lines);
+    let last_s = recording.rows.last().map_or(0.0, |row| row.t_s) - left_s;
     Ok(Replayed {
         verdict: result.value("verdict").unwrap_or("none").to_owned(),
         reasons: lines.iter().filter(|line| line.says("@reason")).map(|line| line.sentence("text")).collect(),
-        parameters: Parameters::read(lines),
-        played: (played, recording.rows.len()),
+        played: (recording.rows.iter().filter(|row| row.t_s <= last_s).count(), recording.rows.len()),
         virtual_s: player.board.now_s(),
         estimate_s,
+        same_on_host: same_on_host(lines, &player.frames, &recording, &parameters),
+        parameters,
     })
+}
+
+/// The board, started, and streaming what its sensor says so that the host can check it.
+fn boot(elf: &[u8], recording: &Recording, telling: Telling) -> Result<Player, Failure> {
+    let world = ReplayWorld::new(recording);
+    let board = Board::new(elf, BoardOptions::default(), Box::new(world.clone()))?;
+    let (narrator, ear) = (Narrator::new(telling), Assembler::default());
+    let mut player = Player { board, world, narrator, ear, lines: Vec::new(), frames: Frames::default() };
+    let hello = player.until(0, &["@hello"], BOOT_S, STEP_S)?;
+    hello.ok_or_else(|| Failure("the board did not say hello within a second".to_owned()))?;
+    let streams = player.say("stream raw", &["@stream kind=raw"], ANSWER_S)?;
+    streams.ok_or_else(|| hung(&player.lines))?;
+    Ok(player)
+}
+
+fn same_on_host(lines: &[Line], frames: &Frames, recording: &Recording, said: &Parameters) -> Option<bool> {
+    // The board knows standard gravity only.
+    let stated = conditions(&recording.metadata);
+    let conditions = Conditions { gravity_mps2: Conditions::CAUTIOUS.gravity_mps2, ..stated };
+    let frames = host_path::session_frames(lines, frames)?;
+    Some(host_path::compute(&frames, conditions).is_some_and(|computed| computed == *said))
 }
 
 /// Types `calibrate` as the recording says, and plays: the session's first sample is the recording's. Answers when its
@@ -194,7 +221,13 @@ impl Replayed {
             let value = if *observable { number(value) } else { "not seen".to_owned() };
             println!("{name:<24} {unit:>5} {value:>15} {:>13}", number(sigma));
         }
-        println!("\n{:.1} virtual seconds, {:.2} s of them for the estimate", self.virtual_s, self.estimate_s);
+        let same = match self.same_on_host {
+            Some(true) => "the host's tool computes the same numbers from the board's samples, bit for bit",
+            Some(false) => "THE HOST'S TOOL COMPUTES OTHER NUMBERS from the board's samples",
+            None => "not every sample was streamed, so the host's tool could not be compared",
+        };
+        println!("\n{same}");
+        println!("{:.1} virtual seconds, {:.2} s of them for the estimate", self.virtual_s, self.estimate_s);
     }
 
     #[must_use]
@@ -203,6 +236,8 @@ impl Replayed {
             json!({ "name": p.name, "value": p.value, "sigma": p.sigma, "unit": p.unit, "observable": p.observable })
         });
         let parameters: Vec<_> = parameters.collect();
-        json!({ "params": parameters, "verdict": self.verdict, "reasons": self.reasons }).to_string()
+        json!({ "params": parameters, "verdict": self.verdict, "reasons": self.reasons,
+            "same_on_host": self.same_on_host })
+        .to_string()
     }
 }
