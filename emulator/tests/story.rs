@@ -12,10 +12,11 @@ use tumble_sim::person::Clumsiness;
 #[test]
 fn the_whole_story_holds() {
     let cast = Cast::new(11, false);
-    let outcome = whole::tell(firmware::elf(), &cast, Script { tumble_s: 12.0, verify: true }).expect("it goes on");
+    let outcome =
+        whole::tell(firmware::elf(), &cast, Script { tumble_s: Some(12.0), verify: true }).expect("it goes on");
     assert_eq!(outcome.checks.failed(), Vec::<String>::new());
     assert!(outcome.score.within(2.0) >= 18, "{:?}", outcome.score.beyond(2.0));
-    assert!(outcome.session.estimate.seconds < 10.0, "{:?}", outcome.session.estimate);
+    assert!(outcome.session.estimate.seconds < 20.0, "{:?}", outcome.session.estimate);
     let (used, size) = outcome.stack.expect("cortex-m-rt's symbols");
     assert!(used + 4096 < size, "stack: {used} of {size} bytes");
 }

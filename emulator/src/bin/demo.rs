@@ -8,13 +8,14 @@ use emulator::story::replay;
 use emulator::story::stage::Cast;
 use emulator::story::whole::{self, Script};
 
-const USAGE: &str = "demo [--firmware ELF] [--seed N] [--by-hand] [--verbose] [--json] [--replay REC.csv]
+const USAGE: &str = "demo [--firmware ELF] [--seed N] [--by-hand] [--verbose] [--json] [--brief] [--replay REC.csv]
 
   --firmware ELF    the image to run; otherwise the environment's TUMBLE_FIRMWARE
   --seed N          of sensor, hands, noise and the person's decisions (1)
   --by-hand         turns end by eye, good to 2 degrees, and not against a fence, good to 0.1
   --verbose         every line of the console, and what the LED shows
   --json            one JSON object on standard output and nothing else
+  --brief           calibrate, store and find again only: no tumbling, no verify
   --replay REC.csv  feed the sensor from a recording instead of a person";
 
 #[derive(Debug)]
@@ -24,13 +25,22 @@ struct Options {
     by_hand: bool,
     verbose: bool,
     json: bool,
+    script: Script,
     replay: Option<PathBuf>,
 }
 
 impl Options {
     fn parse(mut words: impl Iterator<Item = String>) -> Result<Option<Self>, String> {
         let firmware = std::env::var_os("TUMBLE_FIRMWARE").unwrap_or_default().into();
-        let mut options = Self { firmware, seed: 1, by_hand: false, verbose: false, json: false, replay: None };
+        let mut options = Self {
+            firmware,
+            seed: 1,
+            by_hand: false,
+            verbose: false,
+            json: false,
+            script: Script::default(),
+            replay: None,
+        };
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word} needs a value"));
             match word.as_str() {
@@ -39,6 +49,7 @@ impl Options {
                 "--replay" => options.replay = Some(value()?.into()),
                 "--by-hand" => options.by_hand = true,
                 "--verbose" => options.verbose = true,
+                "--brief" => options.script = Script::CALIBRATION,
                 "--json" => options.json = true,
                 "--help" | "-h" => return Ok(None),
                 _ => return Err(format!("{word} is no option of the demo")),
@@ -89,11 +100,11 @@ fn tell(elf: &[u8], options: &Options) -> Result<(), String> {
         let turns = if options.by_hand { "by hand" } else { "against a fence" };
         println!("Seed {}, turns {turns}. The person hears only the console and sees only the LED.", options.seed);
     }
-    let outcome = whole::tell(elf, &cast, Script::default()).map_err(|failure| failure.to_string())?;
+    let outcome = whole::tell(elf, &cast, options.script).map_err(|failure| failure.to_string())?;
     if options.json {
         println!("{}", outcome.json(&cast));
     } else {
-        outcome.print(Script::default());
+        outcome.print(options.script);
     }
     let failed = outcome.checks.failed();
     if failed.is_empty() { Ok(()) } else { Err(format!("these did not hold:\n  {}", failed.join("\n  "))) }

@@ -18,15 +18,20 @@ use super::tally;
 /// How much of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Script {
-    /// Length of each of both tumblings.
-    pub tumble_s: f64,
+    /// Length of each of both tumblings; none to leave them out.
+    pub tumble_s: Option<f64>,
     pub verify: bool,
 }
 
 impl Default for Script {
     fn default() -> Self {
-        Self { tumble_s: 65.0, verify: true }
+        Self { tumble_s: Some(65.0), verify: true }
     }
+}
+
+impl Script {
+    /// The calibration and what is left of it after the power cycle, for those who want many.
+    pub const CALIBRATION: Self = Self { tumble_s: None, verify: false };
 }
 
 /// What it came to.
@@ -83,8 +88,10 @@ pub fn tell(elf: &[u8], cast: &Cast, script: Script) -> Result<Outcome, Failure>
         stack: None,
     };
     if outcome.session.stored {
-        stage.narrator.act("Act 3. The person tumbles the box in the hands, twice.");
-        tumble(&mut stage, &mut outcome, &read_back, &truth.in_box, script)?;
+        if let Some(seconds) = script.tumble_s {
+            stage.narrator.act("Act 3. The person tumbles the box in the hands, twice.");
+            tumble(&mut stage, &mut outcome, &read_back, &truth.in_box, seconds)?;
+        }
         if script.verify {
             stage.narrator.act("Act 4. How does one know that it is right? Six fresh poses.");
             verify(&mut stage, &mut outcome.checks)?;
@@ -109,13 +116,13 @@ fn tumble(
     outcome: &mut Outcome,
     parameters: &Parameters,
     truth: &tumble_sim::sensor::FrameTruth,
-    script: Script,
+    seconds: f64,
 ) -> Result<(), Failure> {
-    let raw = acts::tumble(stage, "raw", script.tumble_s)?;
+    let raw = acts::tumble(stage, "raw", seconds)?;
     let alignment = Alignment::new(stage, &raw)?;
     let rates = alignment.raw_rates(stage, &raw);
     outcome.levels = levelling::of_raw(stage, &raw, &rates, parameters, truth);
-    let cal = acts::tumble(stage, "cal", script.tumble_s)?;
+    let cal = acts::tumble(stage, "cal", seconds)?;
     let later = alignment.later(stage);
     outcome.delivered = levelling::of_delivered(stage, &cal, &later.delivered_rates(stage, &cal));
     let triads = (parameters.triad(Sensor::Accelerometer), parameters.triad(Sensor::Gyroscope));
@@ -146,8 +153,8 @@ impl Outcome {
         if !self.session.parameters.0.is_empty() {
             self.score.print();
         }
-        if self.session.stored {
-            tally::print_levels(script.tumble_s, &self.levels, &self.delivered);
+        if let Some(seconds) = script.tumble_s.filter(|_| self.session.stored) {
+            tally::print_levels(seconds, &self.levels, &self.delivered);
         }
         self.checks.print();
         if let Some((used, size)) = self.stack {

@@ -1,0 +1,151 @@
+//! `cargo xtask bench`: exact instruction counts of the core's hot spots on the emulated Cortex-M4F. The image is
+//! `emulator/bench-firmware`.
+
+use std::collections::HashMap;
+use std::process::ExitCode;
+
+use emulator::{AtRest, Board, BoardError, BoardOptions};
+
+const USAGE: &str = "bench [--firmware ELF]
+
+  --firmware ELF    the image of bench-firmware; otherwise the environment's TUMBLE_FIRMWARE";
+
+/// What is measured: the function, in words, and the function that it is compared with.
+const MEASURED: [(&str, &str, Option<&str>); 6] = [
+    ("bench_paper_sparse", "15-state filter step, block-sparse f32", None),
+    ("bench_paper_dense", "the same step, dense nalgebra 15x15", Some("bench_paper_sparse")),
+    ("bench_propagate", "41-state filter, propagate", None),
+    ("bench_observe_11", "41-state filter, observe, 11 coefficients", None),
+    ("bench_observe_34", "41-state filter, observe, 34 coefficients", Some("bench_observe_11")),
+    ("bench_segmenter", "segmenter, one sample (10 s of rest and turn)", None),
+];
+
+/// Of `bench_nothing`: its `nop` and its return.
+const INSTRUCTIONS_OF_NOTHING: u64 = 2;
+/// Virtual seconds by which the image has certainly finished, about 4 in all.
+const PATIENCE_S: f64 = 60.0;
+const CORE_HZ: f64 = 96e6;
+const SAMPLES_HZ: f64 = 200.0;
+
+/// Instructions of each call, return included.
+type Calls = HashMap<&'static str, Vec<u64>>;
+
+fn main() -> ExitCode {
+    let image = match image(std::env::args().skip(1)) {
+        Ok(Some(image)) => image,
+        Ok(None) => {
+            println!("{USAGE}");
+            return ExitCode::SUCCESS;
+        }
+        Err(wrong) => {
+            eprintln!("bench: {wrong}\n\n{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    let counted = std::fs::read(&image)
+        .map_err(|error| format!("{}: {error}", image.display()))
+        .and_then(|elf| count(&elf).map_err(|error| error.to_string()));
+    match counted {
+        Ok(calls) => {
+            print(&calls);
+            ExitCode::SUCCESS
+        }
+        Err(why) => {
+            eprintln!("bench: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn image(mut words: impl Iterator<Item = String>) -> Result<Option<std::path::PathBuf>, String> {
+    let mut image = std::env::var_os("TUMBLE_FIRMWARE").unwrap_or_default();
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--firmware" => image = words.next().ok_or("--firmware needs a value")?.into(),
+            "--help" | "-h" => return Ok(None),
+            _ => return Err(format!("{word} is no option of the bench")),
+        }
+    }
+    if image.is_empty() {
+        return Err("which firmware? Give --firmware ELF, or run `cargo xtask bench`, which builds it".to_owned());
+    }
+    Ok(Some(image.into()))
+}
+
+fn count(elf: &[u8]) -> Result<Calls, BoardError> {
+    let mut board = Board::new(elf, BoardOptions::default(), Box::new(AtRest))?;
+    let end = board.watch_function("bench_end")?;
+    let done = board.watch_function("bench_done")?;
+    let mut names = HashMap::new();
+    for name in MEASURED.iter().map(|measured| measured.0).chain(["bench_nothing"]) {
+        names.insert(board.watch_function(name)?, name);
+    }
+    if names.len() != MEASURED.len() + 1 {
+        return Err(BoardError("the compiler has merged two of the functions that are measured".to_owned()));
+    }
+    let mut calls = Calls::new();
+    let mut under_way = None;
+    'running: loop {
+        if board.now_s() > PATIENCE_S {
+            return Err(BoardError(format!("the image is not done after {PATIENCE_S} s, pc {:x?}", board.pc())));
+        }
+        board.run_for(0.1)?;
+        for arrival in board.take_arrivals() {
+            if arrival.address == done {
+                break 'running;
+            }
+            if let Some(name) = names.get(&arrival.address) {
+                under_way = Some((*name, arrival.instructions));
+            } else if let (true, Some((name, began))) = (arrival.address == end, under_way.take()) {
+                calls.entry(name).or_default().push(arrival.instructions - began);
+            }
+        }
+    }
+    heed_segmenter(&board)?;
+    less_the_measurement(calls)
+}
+
+/// The synthetic samples must have been taken for two rests and a whole turn, or something else was measured.
+fn heed_segmenter(board: &Board) -> Result<(), BoardError> {
+    let word = |name: &str| {
+        let bytes = board.read_memory(board.symbol(name)?, 4).and_then(|bytes| <[u8; 4]>::try_from(bytes).ok());
+        bytes.map(u32::from_le_bytes).ok_or_else(|| BoardError(format!("{name} cannot be read")))
+    };
+    match (word("BENCH_STILLS")?, word("BENCH_DEGREES")?) {
+        (2, 359..=361) => Ok(()),
+        (stills, degrees) => {
+            Err(BoardError(format!("the segmenter saw {stills} stills and a turn of {degrees} degrees")))
+        }
+    }
+}
+
+/// Takes off what a call that does nothing is counted beyond its own instructions: the jump to `bench_end`.
+fn less_the_measurement(mut calls: Calls) -> Result<Calls, BoardError> {
+    let nothing = calls.remove("bench_nothing").and_then(|counts| counts.first().copied());
+    let own = nothing.and_then(|count| count.checked_sub(INSTRUCTIONS_OF_NOTHING));
+    let own = own.ok_or_else(|| BoardError("bench_nothing was not counted".to_owned()))?;
+    calls.values_mut().flatten().for_each(|count| *count -= own);
+    match MEASURED.iter().find(|measured| !calls.contains_key(measured.0)) {
+        None => Ok(calls),
+        Some(missing) => Err(BoardError(format!("{} was never called", missing.0))),
+    }
+}
+
+fn mean(counts: &[u64]) -> f64 {
+    counts.iter().sum::<u64>() as f64 / counts.len() as f64
+}
+
+fn print(calls: &Calls) {
+    println!(
+        "{:47}{:>7}{:>13}{:>9}{:>9}{:>8}",
+        "instructions on the Cortex-M4F", "calls", "mean", "least", "most", "ratio"
+    );
+    for (name, words, reference) in MEASURED {
+        let counts = &calls[name];
+        let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
+        let ratio = reference.map_or(String::new(), |other| format!("{:.2}", mean(counts) / mean(&calls[other])));
+        println!("{words:47}{:>7}{:>13.1}{least:>9}{most:>9}{ratio:>8}", counts.len(), mean(counts));
+    }
+    let share = mean(&calls["bench_segmenter"]) * SAMPLES_HZ / CORE_HZ;
+    println!("The segmenter's instructions at {SAMPLES_HZ:.0} Hz are {:.2} % of 96 million a second.", share * 100.0);
+}
