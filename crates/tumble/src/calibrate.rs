@@ -1,14 +1,19 @@
-//! A recording through the board's own session code: the same types and the same `f32` arithmetic.
+//! A recording through the board's own session code: the same types and the same `f32` arithmetic; and through the
+//! references that it is held against.
 
 use nalgebra::SMatrix;
 use tumble_core::calibration::{Calibration, Judgement, Reason, Verdict};
+use tumble_core::estimate::sums::SegmentNoise;
+use tumble_core::estimate::two_step;
 use tumble_core::estimate::{Conditions, Estimate, Estimator, PARAMETERS, Progress, judge};
 use tumble_core::motion::MotionEvent;
 use tumble_core::motion::segmenter::Segmenter;
+use tumble_core::procedure::BoxFaces;
 use tumble_core::tape::{Exclusion, Kind, Segment, Tape};
 
 use crate::output::SegmentReport;
 use crate::recording::{Metadata, Reading};
+use crate::reference;
 
 /// Room for fifty minutes of motion (20 records a second), where the board has room for the session that it guides;
 /// nothing else differs.
@@ -17,7 +22,21 @@ const SEGMENTS: usize = 1024;
 /// Records walked between two signs of life.
 const SLICE: usize = 64;
 
-type HostTape = Tape<RECORDS, SEGMENTS>;
+/// The tape of a host.
+pub type HostTape = Tape<RECORDS, SEGMENTS>;
+
+/// What computes the numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The board's own, in its own arithmetic.
+    Device,
+    /// The same problem in one piece, `f64`, from the samples.
+    Batch,
+    /// Gravity over rests alone, after Tedaldi et al. 2014.
+    Gravity,
+    /// The paper's method in the board's arithmetic: as printed, corrected, or its comparison method.
+    TwoStep(two_step::Variant),
+}
 
 /// What is replayed.
 pub struct Session<'a> {
@@ -56,42 +75,72 @@ pub fn conditions(metadata: &Metadata) -> Conditions {
 }
 
 impl Session<'_> {
-    /// Replays it; `progress` hears which share is done, 0 to 1.
+    /// Replays it as the board would; `progress` hears which share is done, 0 to 1.
     pub fn replay(&self, progress: &mut impl FnMut(f32)) -> Outcome {
-        let mut tape = Box::new(HostTape::new());
-        let full_s = self.fill(&mut tape);
-        let estimate = estimate(&tape, self.conditions, progress);
-        let judgement = match &estimate {
-            Ok(estimate) => judge::judge(estimate, &tape, self.lost).0,
-            Err(reason) => Judgement { verdict: Verdict::Rejected, reasons: [*reason].into_iter().collect() },
+        self.run(Method::Device, progress)
+    }
+
+    /// Computes it with any method. A reference starts from the device's result and noise, and is judged by the same judge.
+    pub fn run(&self, method: Method, progress: &mut impl FnMut(f32)) -> Outcome {
+        let (tape, full_s) = self.tape(1.0);
+        let conditions = match method {
+            Method::Gravity => Conditions { faces: BoxFaces::Unknown, ..self.conditions },
+            Method::TwoStep(_) => Conditions { faces: BoxFaces::Square, ..self.conditions },
+            Method::Device | Method::Batch => self.conditions,
         };
-        let mut outcome = Outcome {
-            calibration: estimate.as_ref().ok().map(|estimate| estimate.calibration),
-            verdict: judgement.verdict,
-            reasons: judgement.reasons.iter().map(ToString::to_string).collect(),
-            covariance: estimate.ok().map(|estimate| estimate.covariance),
-            segments: tape.segments().iter().map(|segment| report(segment, self.origin_s)).collect(),
-        };
-        mark_excluded(&mut outcome.segments, &judgement);
+        let estimate = estimate(&tape, conditions, progress).and_then(|(mut estimate, noise)| {
+            let found = match method {
+                Method::Device => return Ok(estimate),
+                Method::Batch => reference::batch(&tape, self.readings, &conditions, &estimate, &noise),
+                Method::Gravity => reference::gravity(&tape, self.readings, &conditions, &estimate),
+                Method::TwoStep(variant) => {
+                    let found = two_step::estimate::<f32, _, _>(&tape, &conditions, variant);
+                    Some(found.map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })?.calibration)
+                }
+            };
+            estimate.calibration = found.ok_or(Reason::Arithmetic { place: "reference" })?;
+            Ok(estimate)
+        });
+        let covariance = estimate.as_ref().ok().filter(|_| method == Method::Device).map(|e| e.covariance);
+        let mut outcome = self.judged(&tape, estimate);
+        outcome.covariance = covariance;
         if let Some(full_s) = full_s {
             outcome.warn(format!("The session's memory was full at {full_s:.1} s: what came later was left out."));
         }
         outcome
     }
 
-    /// Everything onto the tape; if it was full before the end, when.
-    fn fill(&self, tape: &mut HostTape) -> Option<f64> {
-        let mut segmenter = Segmenter::new(1.0);
+    /// Everything onto a tape with the stillness limits at `tolerance` times the usual; if it was full before the end,
+    /// when.
+    pub fn tape(&self, tolerance: f32) -> (Box<HostTape>, Option<f64>) {
+        let mut tape = Box::new(HostTape::new());
+        let mut segmenter = Segmenter::new(tolerance);
         let mut full_s = None;
         for reading in self.readings {
-            let events = segmenter.step(&reading.sample, reading.clipped, tape);
+            let events = segmenter.step(&reading.sample, reading.clipped, &mut tape);
             tape.note_temperature(reading.sample.temperature_degc);
             if events.contains(&MotionEvent::TapeFull) {
                 full_s = Some(seconds(reading.sample.t_us, self.origin_s));
             }
         }
-        segmenter.finish(tape);
-        full_s
+        segmenter.finish(&mut tape);
+        (tape, full_s)
+    }
+
+    fn judged(&self, tape: &HostTape, estimate: Result<Estimate, Reason>) -> Outcome {
+        let judgement = match &estimate {
+            Ok(estimate) => judge::judge(estimate, tape, self.lost).0,
+            Err(reason) => Judgement { verdict: Verdict::Rejected, reasons: [*reason].into_iter().collect() },
+        };
+        let mut outcome = Outcome {
+            calibration: estimate.ok().map(|estimate| estimate.calibration),
+            verdict: judgement.verdict,
+            reasons: judgement.reasons.iter().map(ToString::to_string).collect(),
+            covariance: None,
+            segments: tape.segments().iter().map(|segment| report(segment, self.origin_s)).collect(),
+        };
+        mark_excluded(&mut outcome.segments, &judgement);
+        outcome
     }
 }
 
@@ -116,12 +165,20 @@ fn mark_excluded(segments: &mut [SegmentReport], judgement: &Judgement) {
     }
 }
 
-fn estimate(tape: &HostTape, conditions: Conditions, progress: &mut impl FnMut(f32)) -> Result<Estimate, Reason> {
+/// The device's estimate over a tape, with what it found of each segment's noise.
+///
+/// # Errors
+/// If the arithmetic breaks down.
+pub fn estimate(
+    tape: &HostTape,
+    conditions: Conditions,
+    progress: &mut impl FnMut(f32),
+) -> Result<(Estimate, Vec<SegmentNoise>), Reason> {
     let mut estimator = Box::new(Estimator::new(tape, conditions));
     loop {
         match estimator.work(tape, SLICE).map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })? {
             Progress::Working(share) => progress(share.min(1.0)),
-            Progress::Done(estimate) => return Ok(estimate),
+            Progress::Done(estimate) => return Ok((estimate, estimator.segment_noise().to_vec())),
         }
     }
 }

@@ -9,6 +9,7 @@ pub mod cli;
 pub mod export;
 pub mod output;
 pub mod recording;
+pub mod reference;
 pub mod serial;
 pub mod simulate;
 pub mod study;

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use tumble_core::estimate::Conditions;
+use tumble_core::estimate::two_step::Variant;
 use tumble_core::sample::Ranges;
 
 use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
-use crate::calibrate::{self, Session};
+use crate::calibrate::{self, Method, Session};
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
 
@@ -26,6 +27,29 @@ enum Reference {
 enum EstimatorWord {
     /// The board's own, in its own arithmetic
     Device,
+    /// The same problem in one piece, in double precision, from the samples
+    Batch,
+    /// Gravity over rests alone, as `imu_tk` has it
+    Gravity,
+    /// The paper's two-step method, correctly coded; takes the box as square
+    TwoStep,
+    /// The same as its published results look
+    TwoStepLiteral,
+    /// The paper's comparison method
+    Traditional,
+}
+
+impl From<EstimatorWord> for Method {
+    fn from(word: EstimatorWord) -> Self {
+        match word {
+            EstimatorWord::Device => Self::Device,
+            EstimatorWord::Batch => Self::Batch,
+            EstimatorWord::Gravity => Self::Gravity,
+            EstimatorWord::TwoStep => Self::TwoStep(Variant::Corrected),
+            EstimatorWord::TwoStepLiteral => Self::TwoStep(Variant::Literal),
+            EstimatorWord::Traditional => Self::TwoStep(Variant::Traditional),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -73,9 +97,7 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         conditions: conditions(arguments, recording),
     };
     let mut progress = Progress::new();
-    let outcome = match arguments.estimator {
-        EstimatorWord::Device => session.replay(&mut |share| progress.share("estimating", share)),
-    };
+    let outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
     drop(progress);
     let report = Report::of(&outcome);
     if arguments.json {

@@ -1,12 +1,15 @@
 //! `tumble study`: published figures, each from one command.
 
+use std::path::PathBuf;
+
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
 use super::Refusal;
 use super::output::{self, Progress};
-use crate::output::study as tables;
+use crate::output::{paper as paper_tables, study as tables};
 use crate::study::limits::{Effort, Scenario, ScenarioSummary};
+use crate::study::{paper as paper_study, recordings as real};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -18,6 +21,39 @@ pub(super) struct Arguments {
 enum Study {
     /// The device's estimator over many simulated sessions, against the Cramér–Rao bound
     Limits(LimitsArguments),
+    /// The paper's simulation by its method, its comparison method and ours, and the story of its mismatch
+    Paper(PaperArguments),
+    /// Real recordings by several estimators, beside what their authors published
+    Recordings(RecordingsArguments),
+}
+
+#[derive(Debug, Args)]
+struct PaperArguments {
+    /// Runs; the table's tilt goes from 0 to 3° over them
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..))]
+    runs: u32,
+    /// Threads
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..))]
+    threads: u32,
+    /// First seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
+    /// Folder for the figures, as SVG
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+struct RecordingsArguments {
+    /// Folder of the recordings
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Print one JSON object instead of tables
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -42,6 +78,8 @@ struct LimitsArguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
     match &arguments.study {
         Study::Limits(arguments) => limits(arguments),
+        Study::Paper(arguments) => paper(arguments),
+        Study::Recordings(arguments) => recordings(arguments),
     }
 }
 
@@ -85,4 +123,30 @@ fn run_all(arguments: &LimitsArguments, scenarios: &[Scenario], navigate: bool) 
         summaries.push(scenario.run(&effort, navigate, &mut done));
     }
     summaries
+}
+
+fn recordings(arguments: &RecordingsArguments) -> Result<(), Refusal> {
+    let mut progress = Progress::new();
+    let report = real::run(&arguments.folder, &mut |share| progress.share("recordings", share));
+    drop(progress);
+    if report.rows.is_empty() {
+        return Err(Refusal { reasons: report.missing, status: 1 });
+    }
+    let text = if arguments.json { serde_json::to_string(&report)? + "\n" } else { tables::recordings(&report) };
+    Ok(output::print(&text)?)
+}
+
+fn paper(arguments: &PaperArguments) -> Result<(), Refusal> {
+    let effort = Effort { runs: arguments.runs as usize, threads: arguments.threads as usize, seed: arguments.seed };
+    let mut progress = Progress::new();
+    let runs = paper_study::run(&effort, &mut |done| progress.share("runs", done as f32 / arguments.runs as f32))?;
+    drop(progress);
+    let story = paper_study::story::story(&runs);
+    if let Some(folder) = &arguments.out {
+        let files = paper_study::plots::draw(&runs, folder)
+            .map_err(|error| Refusal::one(format!("{}: {error}", folder.display())))?;
+        files.iter().for_each(|file| output::error(&format!("drawn: {}", file.display())));
+    }
+    let text = if arguments.json { serde_json::to_string(&story)? + "\n" } else { paper_tables::paper(&story) };
+    Ok(output::print(&text)?)
 }

@@ -1,5 +1,6 @@
 //! What a calibration looks like outside: the contract's JSON ([`Report`]) and a page for the terminal ([`table`]).
 
+pub mod paper;
 mod report;
 pub mod study;
 pub mod table;

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write};
 
 use crate::study::limits::ScenarioSummary;
+use crate::study::recordings::{Report, Row};
 
 /// What `design.md` §2 gives as Cramér–Rao sigmas, of an earlier simulation of another protocol: scheme, reference, group,
 /// sigma in the group's unit.
@@ -107,4 +108,38 @@ fn short(text: &mut String, scenarios: &[ScenarioSummary]) -> fmt::Result {
         writeln!(text, " {nees:>7.2} {:>5}/{}", scenario.accepted, scenario.runs + scenario.failures.len())?;
     }
     writeln!(text, "* Cramér–Rao sigma published in design.md, of another protocol")
+}
+
+/// `tumble study recordings`.
+pub fn recordings(report: &Report) -> String {
+    let mut text = String::new();
+    let _ = side_by_side(&mut text, report);
+    text
+}
+
+fn side_by_side(text: &mut String, report: &Report) -> fmt::Result {
+    writeln!(text, "gyroscope scale error, % (one sigma), and accelerometer bias, m/s²")?;
+    for Row { file, method, scale_percent, scale_sigma_percent, accel_bias_mps2, remark } in &report.rows {
+        let scale = three(scale_percent.as_ref(), 3);
+        let sigma = three(scale_sigma_percent.as_ref(), 3);
+        let bias = three(accel_bias_mps2.as_ref(), 3);
+        writeln!(text, "  {file:<28} {method:<10} {scale:<24} ({sigma:<20}) {bias:<22} {remark}")?;
+    }
+    writeln!(text, "stillness limits: change of the device's scales in their sigmas")?;
+    for tolerance in &report.tolerances {
+        let moved = three(tolerance.moved_sigma.as_ref(), 2);
+        writeln!(text, "  {:<28} x {:<4} {moved}", tolerance.file, tolerance.tolerance)?;
+    }
+    if let Some(agreement) = &report.agreement {
+        writeln!(
+            text,
+            "two chips on one board, {} samples of {:.1} deg/s rms: they differ by {:.3} deg/s raw, {:.3} compensated",
+            agreement.samples, agreement.rate_dps, agreement.raw_dps, agreement.compensated_dps
+        )?;
+    }
+    report.missing.iter().try_for_each(|missing| writeln!(text, "not read: {missing}"))
+}
+
+fn three(values: Option<&[f64; 3]>, digits: usize) -> String {
+    values.map_or_else(|| "-".into(), |v| format!("{:+.digits$} {:+.digits$} {:+.digits$}", v[0], v[1], v[2]))
 }

@@ -22,6 +22,7 @@ use tumble_sim::sensor::FrameTruth;
 use tumble_sim::{Recording, SchemeConfig};
 
 use super::trial::{matrix, up_face};
+use crate::reference::{ACCEL_BIAS_SIGMA, CORRECTION_SIGMA};
 
 const PHI: usize = 0;
 const GYRO: usize = 3;
@@ -226,15 +227,14 @@ impl<'a> Bound<'a> {
 
 /// The device's, with what the frame fixes at zero.
 fn prior(square: bool) -> SMatrix<f64, STATES, STATES> {
-    let correction = f64::from(tumble_core::estimate::device::CORRECTION_SIGMA);
     let mut sigma = Row::zeros();
     sigma.fixed_rows_mut::<2>(PHI).fill(0.1);
-    sigma.fixed_rows_mut::<9>(GYRO).fill(correction);
+    sigma.fixed_rows_mut::<9>(GYRO).fill(CORRECTION_SIGMA);
     sigma.fixed_rows_mut::<3>(GYRO_BIAS).fill(0.1);
     for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-        sigma[ACCEL + 3 * i + j] = if square || j <= i { correction } else { 0.0 };
+        sigma[ACCEL + 3 * i + j] = if square || j <= i { CORRECTION_SIGMA } else { 0.0 };
     }
-    sigma.fixed_rows_mut::<3>(ACCEL_BIAS).fill(0.8);
+    sigma.fixed_rows_mut::<3>(ACCEL_BIAS).fill(ACCEL_BIAS_SIGMA);
     sigma.fixed_rows_mut::<3>(LEVER).fill(0.05);
     sigma.fixed_rows_mut::<2>(TABLE).fill(0.1);
     sigma.fixed_rows_mut::<3>(EARTH).fill(5e-5);

@@ -137,7 +137,7 @@ impl Scenario {
 
     /// Runs it; `navigate` adds the tumbling.
     pub fn run(&self, effort: &Effort, navigate: bool, done: &mut (impl FnMut(usize) + Send)) -> ScenarioSummary {
-        let work = |index: usize| -> Result<(Trial, Vec<LevelError>), TrialError> {
+        let work = |index: usize| -> Result<(Trial, Levels), TrialError> {
             let config = self.config(index, effort);
             let trial = Trial::run(&config, self.faces)?;
             let levels = if navigate { navigated(&config, &trial)? } else { Vec::new() };
@@ -157,7 +157,7 @@ impl Scenario {
         self.summary(&trials, &levels, failures)
     }
 
-    fn summary(&self, trials: &[Trial], levels: &[Vec<LevelError>], failures: Vec<String>) -> ScenarioSummary {
+    fn summary(&self, trials: &[Trial], levels: &[Levels], failures: Vec<String>) -> ScenarioSummary {
         ScenarioSummary {
             name: self.name,
             scheme: self.scheme.name(),
@@ -173,25 +173,31 @@ impl Scenario {
     }
 }
 
-/// What [`navigated`] compares.
-const CALIBRATIONS: [&str; 3] = ["perfect", "device", "bias alone"];
+/// One run's level errors by calibration.
+type Levels = Vec<(&'static str, LevelError)>;
 
-fn navigated(config: &SchemeConfig, trial: &Trial) -> Result<Vec<LevelError>, TrialError> {
+fn navigated(config: &SchemeConfig, trial: &Trial) -> Result<Levels, TrialError> {
     let recording = tumbling(config)?;
-    let ways = [Compensation::perfect(trial), Compensation::estimated(trial), Compensation::bias_alone(trial)];
-    Ok(ways.iter().map(|way| level_error(&recording, way)).collect())
+    let mut ways = vec![
+        ("perfect", Compensation::perfect(trial)),
+        ("device", Compensation::estimated(trial)),
+        ("bias alone", Compensation::bias_alone(trial)),
+    ];
+    let two_step = trial.two_step.as_ref();
+    ways.extend(two_step.map(|found| ("two-step", Compensation::of(found, trial.rotation_f_from_b))));
+    Ok(ways.into_iter().map(|(name, way)| (name, level_error(&recording, &way))).collect())
 }
 
-fn navigation(levels: &[Vec<LevelError>]) -> Vec<NavigationSummary> {
-    let asked = levels.first().is_some_and(|level| !level.is_empty());
-    let names = CALIBRATIONS.into_iter().enumerate().filter(|_| asked);
-    names
-        .map(|(i, calibration)| {
-            let (end_mean_deg, end_95_deg) = mean_and_95(levels.iter().map(|level| level[i].end_deg).collect());
-            let (max_mean_deg, max_95_deg) = mean_and_95(levels.iter().map(|level| level[i].max_deg).collect());
-            NavigationSummary { calibration, end_mean_deg, end_95_deg, max_mean_deg, max_95_deg }
-        })
-        .collect()
+fn navigation(levels: &[Levels]) -> Vec<NavigationSummary> {
+    let names = levels.iter().max_by_key(|run| run.len()).into_iter().flatten().map(|level| level.0);
+    let summary = |calibration: &'static str| {
+        let runs: Vec<LevelError> =
+            levels.iter().flatten().filter(|level| level.0 == calibration).map(|level| level.1).collect();
+        let (end_mean_deg, end_95_deg) = mean_and_95(runs.iter().map(|level| level.end_deg).collect());
+        let (max_mean_deg, max_95_deg) = mean_and_95(runs.iter().map(|level| level.max_deg).collect());
+        NavigationSummary { calibration, end_mean_deg, end_95_deg, max_mean_deg, max_95_deg }
+    };
+    names.map(summary).collect()
 }
 
 fn mean_and_95(mut values: Vec<f64>) -> (f64, f64) {

@@ -5,6 +5,8 @@
 pub mod bound;
 pub mod limits;
 pub mod navigation;
+pub mod paper;
 pub mod parallel;
+pub mod recordings;
 pub mod summary;
 pub mod trial;

@@ -5,10 +5,11 @@
 //! upward direction in the sensor's frame, which heading errors do not enter.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use tumble_core::calibration::Triad;
+use tumble_core::calibration::{Calibration, Triad};
 use tumble_sim::{Recording, Scheme, SchemeConfig, SimError};
 
 use super::trial::{Trial, matrix};
+use crate::reference::data::turned;
 
 /// Length of the tumbling, s: the paper's.
 pub const TUMBLE_S: f64 = 65.0;
@@ -34,7 +35,8 @@ pub struct Correction {
 }
 
 impl Correction {
-    fn apply(&self, raw: &Vector3<f64>) -> Vector3<f64> {
+    /// Compensates.
+    pub fn apply(&self, raw: &Vector3<f64>) -> Vector3<f64> {
         self.matrix * (raw - self.bias)
     }
 }
@@ -59,10 +61,15 @@ pub struct Compensation {
 impl Compensation {
     /// What was estimated.
     pub fn estimated(trial: &Trial) -> Self {
+        Self::of(&trial.calibration, trial.rotation_f_from_b)
+    }
+
+    /// A calibration and where its frame stands in the box.
+    pub fn of(calibration: &Calibration, rotation_f_from_b: Matrix3<f64>) -> Self {
         Self {
-            gyro: (&trial.calibration.gyroscope.triad).into(),
-            accel: (&trial.calibration.accelerometer.triad).into(),
-            rotation_f_from_b: trial.rotation_f_from_b,
+            gyro: (&calibration.gyroscope.triad).into(),
+            accel: (&calibration.accelerometer.triad).into(),
+            rotation_f_from_b,
         }
     }
 
@@ -97,28 +104,32 @@ pub fn tumbling(session: &SchemeConfig) -> Result<Recording, SimError> {
 
 /// Navigates over it.
 pub fn level_error(recording: &Recording, compensation: &Compensation) -> LevelError {
+    let levels = level_errors(recording, compensation);
+    LevelError {
+        end_deg: levels.last().map_or(0.0, |level| level.1),
+        max_deg: levels.iter().fold(0.0, |most, level| most.max(level.1)),
+    }
+}
+
+/// Time since the tumbling began (s) and level error then (degrees), sample by sample.
+pub fn level_errors(recording: &Recording, compensation: &Compensation) -> Vec<(f64, f64)> {
     let (start_s, end_s) = tumbled(recording);
     let true_up = |t_s: f64| {
         compensation.rotation_f_from_b * recording.world.true_attitude(t_s).inverse_transform_vector(&Vector3::z())
     };
     let earth = recording.world.earth_rate_n();
     let mut attitude = start(recording, compensation, start_s);
-    let mut max_deg: f64 = 0.0;
-    let mut end_deg = 0.0;
+    let mut levels = Vec::new();
     for pair in recording.samples.windows(2).filter(|pair| pair[0].t_s >= start_s && pair[1].t_s <= end_s) {
         let dt = pair[1].t_s - pair[0].t_s;
         let [a, b] = [0, 1].map(|i| compensation.gyro.apply(&pair[i].angular_rate_rad_s));
-        // Trapezoid, and the coning of a rate that changes linearly.
-        let turn = (a + b) * (0.5 * dt) + a.cross(&b) * (dt * dt / 12.0);
         let earth = UnitQuaternion::from_scaled_axis(earth * -dt);
-        attitude =
-            UnitQuaternion::new_normalize((earth * attitude * UnitQuaternion::from_scaled_axis(turn)).into_inner());
+        attitude = UnitQuaternion::new_normalize((earth * attitude * turned(&a, &b, dt)).into_inner());
         let up = attitude.inverse_transform_vector(&Vector3::z());
         let truth = true_up(pair[1].t_s);
-        end_deg = up.cross(&truth).norm().atan2(up.dot(&truth)).to_degrees();
-        max_deg = max_deg.max(end_deg);
+        levels.push((pair[1].t_s - start_s, up.cross(&truth).norm().atan2(up.dot(&truth)).to_degrees()));
     }
-    LevelError { end_deg, max_deg }
+    levels
 }
 
 /// When it is tumbled, s.

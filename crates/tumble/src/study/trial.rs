@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use thiserror::Error;
 use tumble_core::calibration::{Calibration, Verdict};
+use tumble_core::estimate::two_step::Variant;
 use tumble_core::estimate::{Conditions, PARAMETERS};
 use tumble_core::procedure::{BoxFaces, TurnStops};
 use tumble_core::sample::Sample;
@@ -11,7 +12,7 @@ use tumble_sim::sensor::FrameTruth;
 use tumble_sim::{Face, SchemeConfig, SimError};
 
 use super::bound::bound;
-use crate::calibrate::Session;
+use crate::calibrate::{Method, Session};
 use crate::recording::Reading;
 
 /// The 24 parameters.
@@ -44,6 +45,8 @@ pub struct Trial {
     pub bound: Parameters,
     /// The estimate.
     pub calibration: Calibration,
+    /// By the paper's two-step method, corrected; where a square box gives its frame.
+    pub two_step: Option<Calibration>,
     /// Was it accepted?
     pub accepted: bool,
     /// The truth in the estimate's frame.
@@ -61,7 +64,12 @@ impl Trial {
         let recording = config.record()?;
         let readings = readings(&recording.samples);
         let conditions = Conditions { stops: stops(config), faces, gravity_mps2: config.world.gravity_mps2 as f32 };
-        let outcome = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions }.replay(&mut |_| {});
+        let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions };
+        let outcome = session.replay(&mut |_| {});
+        let two_step = match faces {
+            BoxFaces::Square => session.run(Method::TwoStep(Variant::Corrected), &mut |_| {}).calibration,
+            BoxFaces::Unknown => None,
+        };
         let (Some(calibration), Some(covariance)) = (outcome.calibration, outcome.covariance) else {
             let reason = outcome.reasons.into_iter().next().unwrap_or_default();
             return Err(TrialError::NoEstimate { seed: config.world.seed, reason });
@@ -77,6 +85,7 @@ impl Trial {
             covariance: covariance.cast(),
             bound,
             calibration,
+            two_step,
             accepted: outcome.verdict != Verdict::Rejected,
             truth,
             rotation_f_from_b,

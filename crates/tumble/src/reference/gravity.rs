@@ -1,0 +1,121 @@
+//! Gravity alone, after Tedaldi, Pretto & Menegatti 2014 ("A robust and easy to implement method for IMU calibration
+//! without external equipments", the method of `imu_tk`), in our own code.
+//!
+//! 1. Accelerometer, nine numbers: `|A (f − a)| = g` over all rests, A lower-triangular.
+//! 2. Gyroscope, nine numbers, its bias being the mean rate over rests: the upward direction of one rest, carried by the
+//!    gyroscope through the move, is that of the next.
+
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use tumble_core::estimate::{Conditions, Noise};
+
+use super::data::{Stretch, turned};
+use super::solve::{Block, Solution, minimise};
+use super::{ACCEL_BIAS_SIGMA, CORRECTION_SIGMA};
+
+/// `A` by rows, its six elements, then `a`.
+const LOWER: [(usize, usize); 6] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
+
+/// A triad with its covariance: bias 3, correction 9 by rows.
+#[derive(Clone, Debug)]
+pub struct Fitted {
+    /// SI.
+    pub bias: Vector3<f64>,
+    /// 1.
+    pub correction: Matrix3<f64>,
+    /// Of the bias.
+    pub bias_sigma: Vector3<f64>,
+    /// Of the correction; zero where the frame fixes it.
+    pub correction_sigma: Matrix3<f64>,
+}
+
+/// Both triads in the accelerometer's frame; none without rests or with a singular fit.
+pub fn estimate(stretches: &[Stretch], conditions: &Conditions, noise: &Noise) -> Option<(Fitted, Fitted)> {
+    let accel = accelerometer(stretches, conditions, noise)?;
+    let gyro = gyroscope(stretches, &accel, noise)?;
+    Some((accel, gyro))
+}
+
+fn accelerometer(stretches: &[Stretch], conditions: &Conditions, noise: &Noise) -> Option<Fitted> {
+    let gravity = f64::from(conditions.gravity_mps2);
+    let mut blocks: Vec<Block> = Vec::new();
+    for rest in stretches.iter().filter(|stretch| stretch.is_rest()) {
+        let sigma = (f64::from(noise.force_density) / rest.duration_s).sqrt();
+        let force = rest.mean_force;
+        blocks.push(Block::new(0..9, move |x| {
+            let (correction, bias) = lower(x);
+            vec![((correction * (force - bias)).norm() - gravity) / sigma]
+        }));
+    }
+    let start: Vec<f64> = LOWER.iter().map(|&(i, j)| f64::from(u8::from(i == j))).chain([0.0; 3]).collect();
+    let sigma = |unknown: usize| if unknown < 6 { CORRECTION_SIGMA } else { ACCEL_BIAS_SIGMA };
+    // Priors keep the solver in bounds where the rests do not.
+    blocks.extend((0..9).map(|unknown| Block::prior(unknown, start[unknown], sigma(unknown))));
+    let solution = minimise(&blocks, start, &[1e-6; 9]);
+    let sigmas = sigmas(&solution)?;
+    let (correction, bias) = lower(&solution.x);
+    let mut correction_sigma = Matrix3::zeros();
+    LOWER.iter().zip(&sigmas).for_each(|(&at, sigma)| correction_sigma[at] = *sigma);
+    Some(Fitted { bias, correction, bias_sigma: Vector3::from_column_slice(&sigmas[6..9]), correction_sigma })
+}
+
+fn lower(x: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
+    let mut correction = Matrix3::zeros();
+    LOWER.iter().zip(x).for_each(|(&at, value)| correction[at] = *value);
+    (correction, Vector3::from_column_slice(&x[6..9]))
+}
+
+fn gyroscope(stretches: &[Stretch], accel: &Fitted, noise: &Noise) -> Option<Fitted> {
+    let rests = || stretches.iter().filter(|stretch| stretch.is_rest());
+    let time_s: f64 = rests().map(|rest| rest.duration_s).sum();
+    let bias = rests().map(|rest| rest.mean_rate * rest.duration_s).sum::<Vector3<f64>>() / time_s;
+    let mut blocks: Vec<Block> = Vec::new();
+    for (k, from) in stretches.iter().enumerate().filter(|(_, stretch)| stretch.is_rest()) {
+        let moves = stretches[k + 1..].iter().take_while(|stretch| !stretch.is_rest());
+        let moves: Vec<&Stretch> = moves.collect();
+        let Some(to) = stretches.get(k + 1 + moves.len()) else { break };
+        if !moves.is_empty() && !moves.iter().any(|stretch| stretch.is_broken()) {
+            blocks.push(hinge(from, moves, to, accel, bias, noise));
+        }
+    }
+    let start: Vec<f64> = Matrix3::<f64>::identity().transpose().iter().copied().collect();
+    blocks.extend((0..9).map(|unknown| Block::prior(unknown, start[unknown], CORRECTION_SIGMA)));
+    let solution = minimise(&blocks, start, &[1e-6; 9]);
+    let sigmas = sigmas(&solution)?;
+    let bias_sigma = Vector3::repeat((f64::from(noise.rate_density) / time_s).sqrt());
+    Some(Fitted {
+        bias,
+        correction: Matrix3::from_row_slice(&solution.x),
+        bias_sigma,
+        correction_sigma: Matrix3::from_row_slice(&sigmas),
+    })
+}
+
+/// `ΔRᵀ u₀ − u₁`, whitened by the gyroscope's noise over the move and the accelerometer's over both rests.
+fn hinge<'a>(
+    from: &Stretch,
+    moves: Vec<&'a Stretch>,
+    to: &Stretch,
+    accel: &Fitted,
+    bias: Vector3<f64>,
+    noise: &Noise,
+) -> Block<'a> {
+    let up = |rest: &Stretch| (accel.correction * (rest.mean_force - accel.bias)).normalize();
+    let (before, after) = (up(from), up(to));
+    let level = f64::from(noise.force_density) / tumble_sim::STANDARD_GRAVITY_MPS2.powi(2);
+    let move_s: f64 = moves.iter().map(|stretch| stretch.duration_s).sum();
+    let rotation = f64::from(noise.rate_density * noise.motion_scale) * move_s;
+    let sigma = (rotation + level * (1.0 / from.duration_s + 1.0 / to.duration_s)).sqrt();
+    Block::new(0..9, move |x| {
+        let correction = Matrix3::from_row_slice(x);
+        let mut rotation = UnitQuaternion::identity();
+        for interval in moves.iter().flat_map(|stretch| &stretch.intervals) {
+            let [a, b] = interval.rates.map(|rate| correction * (rate - bias));
+            rotation *= turned(&a, &b, interval.dt_s);
+        }
+        ((rotation.inverse_transform_vector(&before) - after) / sigma).iter().copied().collect()
+    })
+}
+
+fn sigmas(solution: &Solution) -> Option<Vec<f64>> {
+    solution.covariance.as_ref().map(|covariance| covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect())
+}

@@ -1,0 +1,78 @@
+//! References in `f64`, from the samples themselves: what the device's `f32` passes over decimated sums are held against.
+
+pub mod batch;
+pub mod data;
+pub mod gravity;
+pub mod solve;
+
+use nalgebra::{Matrix3, Vector3};
+use tumble_core::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
+use tumble_core::estimate::sums::SegmentNoise;
+use tumble_core::estimate::{Conditions, Estimate};
+
+use crate::calibrate::HostTape;
+use crate::recording::Reading;
+use data::Stretch;
+use gravity::Fitted;
+
+/// Prior of a correction's element, the device's (`docs/method.md`, "Priors and observability"), 1.
+pub const CORRECTION_SIGMA: f64 = 0.06;
+/// Prior of an accelerometer bias, the device's, m/s².
+pub const ACCEL_BIAS_SIGMA: f64 = 0.8;
+
+/// [`batch::estimate`] over the segments of a tape.
+pub fn batch(
+    tape: &HostTape,
+    readings: &[Reading],
+    conditions: &Conditions,
+    start: &Estimate,
+    noise: &[SegmentNoise],
+) -> Option<Calibration> {
+    let stretches = data::stretches(tape.segments(), readings);
+    let batch = batch::estimate(&stretches, conditions, start, noise)?;
+    let fit = fit(&stretches, &batch.accel, conditions, &start.calibration.fit, batch.chi_square_per_dof as f32);
+    Some(calibration(&batch.accel, &batch.gyro, conditions.frame(), fit, tape.temperature_degc()))
+}
+
+/// [`gravity::estimate`] likewise; it has no residuals that would be comparable with the others'.
+pub fn gravity(
+    tape: &HostTape,
+    readings: &[Reading],
+    conditions: &Conditions,
+    start: &Estimate,
+) -> Option<Calibration> {
+    let stretches = data::stretches(tape.segments(), readings);
+    let (accel, gyro) = gravity::estimate(&stretches, conditions, &start.noise)?;
+    let fit = fit(&stretches, &accel, conditions, &start.calibration.fit, f32::NAN);
+    Some(calibration(&accel, &gyro, Frame::Accelerometer, fit, tape.temperature_degc()))
+}
+
+fn calibration(accel: &Fitted, gyro: &Fitted, frame: Frame, fit: Fit, temperature_degc: f32) -> Calibration {
+    Calibration { accelerometer: triad(accel), gyroscope: triad(gyro), frame, temperature_degc, fit }
+}
+
+/// Not observable where the device would say so: where the data leave more than a tenth of the prior.
+fn triad(fitted: &Fitted) -> TriadEstimate {
+    let correction_sigma: Matrix3<f32> = fitted.correction_sigma.cast();
+    let limit = 0.1 * CORRECTION_SIGMA as f32;
+    TriadEstimate {
+        triad: Triad { bias: fitted.bias.cast(), correction: fitted.correction.cast() },
+        bias_sigma: fitted.bias_sigma.cast(),
+        correction_sigma,
+        observable: std::array::from_fn(|i| std::array::from_fn(|j| correction_sigma[(i, j)] < limit)),
+    }
+}
+
+fn fit(stretches: &[Stretch], accel: &Fitted, conditions: &Conditions, device: &Fit, nis_per_dof: f32) -> Fit {
+    let gravity = f64::from(conditions.gravity_mps2);
+    let force = |rest: &Stretch| -> Vector3<f64> { accel.correction * (rest.mean_force - accel.bias) };
+    let errors: Vec<f64> =
+        stretches.iter().filter(|stretch| stretch.is_rest()).map(|rest| force(rest).norm() - gravity).collect();
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    Fit {
+        nis_per_dof,
+        gravity_rms_mps2: (squares / errors.len().max(1) as f64).sqrt() as f32,
+        gravity_max_mps2: errors.iter().fold(0.0f64, |most, error| most.max(error.abs())) as f32,
+        ..*device
+    }
+}
