@@ -1,10 +1,35 @@
-//! `cargo xtask bench`: exact instructions of the image on the emulated core.
+//! `cargo xtask bench`: exact instructions of the core's hot spots on the emulated core, and the size of the firmware.
+
+use std::path::PathBuf;
 
 use crate::args::Arguments;
-use crate::{Failure, emulator};
+use crate::firmware::{self, Board};
+use crate::process::{self, root};
+use crate::toolchain::{self, TARGET, Toolchain};
+use crate::{Failure, emulator, size};
 
 /// Leaves with the program's own exit status.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let image = emulator::image(arguments)?;
-    emulator::program("bench", &image, &arguments.rest)
+    let toolchain = toolchain::set_up(arguments.toolchain)?;
+    eprintln!("set-up: the firmware is built with {}", toolchain.name());
+    let image = image(toolchain)?;
+    let product = firmware::build(toolchain, Board::BlackPill)?;
+    emulator::program("bench", &image, &arguments.rest)?;
+    size::report(Board::BlackPill, &product).map(drop)
+}
+
+/// Builds the image whose functions are counted, a workspace of its own.
+fn image(toolchain: Toolchain) -> Result<PathBuf, Failure> {
+    let mut build = toolchain.cargo_for_board("build");
+    build.args(["--manifest-path", "emulator/bench-firmware/Cargo.toml"]);
+    let target = match toolchain {
+        Toolchain::Native => {
+            build.args(["--target-dir", "emulator/target/bench"]);
+            "emulator/target/bench"
+        }
+        // Already said, and with it where the library built from source lies.
+        Toolchain::Debian => toolchain.target_folder(),
+    };
+    process::run(&mut build)?;
+    Ok(root().join(target).join(TARGET).join("release/bench-firmware"))
 }

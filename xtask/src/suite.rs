@@ -23,9 +23,9 @@ pub fn run_all(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Formatting of all three workspaces, before anything is compiled.
+/// Formatting of all workspaces, before anything is compiled.
 fn style(steps: &mut Steps) -> Result<(), Failure> {
-    for folder in ["", "emulator", "emulator/probe-firmware"] {
+    for folder in ["", "emulator", "emulator/probe-firmware", "emulator/bench-firmware"] {
         let name = format!("format of {}", if folder.is_empty() { "the workspace" } else { folder });
         steps.step(&name, || run(cargo().current_dir(root().join(folder)).args(["fmt", "--all", "--check"])))?;
     }
