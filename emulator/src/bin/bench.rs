@@ -147,5 +147,6 @@ fn print(calls: &Calls) {
         println!("{words:47}{:>7}{:>13.1}{least:>9}{most:>9}{ratio:>8}", counts.len(), mean(counts));
     }
     let share = mean(&calls["bench_segmenter"]) * SAMPLES_HZ / CORE_HZ;
+    println!("All at opt-level 3. The product is linked at \"s\", which takes more (bench-firmware/Cargo.toml).");
     println!("The segmenter's instructions at {SAMPLES_HZ:.0} Hz are {:.2} % of 96 million a second.", share * 100.0);
 }
