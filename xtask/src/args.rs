@@ -12,7 +12,7 @@ usage: cargo xtask [--toolchain auto|debian] TASK [ARGUMENTS]
           --seed N  --by-hand  --verbose  --json  --replay REC.csv
   test    set-up, then every check and test
   size    set-up, then flash, RAM and stack of the firmware
-  bench   set-up, then instructions on the emulated core and time on this machine
+  bench   set-up, then exact instruction counts on the emulated core, and the firmware's size
 
 TUMBLE_TOOLCHAIN=debian in the environment does what --toolchain debian does: build the firmware with Debian's
 rustc-web and its library sources instead of a rustup target.";
