@@ -152,6 +152,11 @@ pub enum Reason {
         /// rad/s.
         drift_rad_s: f32,
     },
+    /// The box was called square, and its faces are not.
+    CrookedBox {
+        /// How far a face is from square, one sigma over the faces, rad.
+        facet_rad: f32,
+    },
     /// A segment was left out because it does not fit the rest.
     SegmentExcluded {
         /// Index as in the segment list.

@@ -179,6 +179,10 @@ impl<const S: usize> Estimator<S> {
         if let Some((excess, _)) = sums.pivot.value() {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
+        if let Some(excess) = walk_excess(&sums.facet, self.noise.crookedness_rad().is_some()) {
+            let sigma = self.noise.facet_sigma_rad.unwrap_or_default();
+            self.noise.set_facet_variance(sigma * sigma + excess);
+        }
         if let Some((excess, sigma)) = sums.stop.value() {
             let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
             self.noise.set_stop_variance(variance + excess, sigma, self.conditions.stops);
@@ -286,8 +290,8 @@ impl<const S: usize> Estimator<S> {
     }
 }
 
-/// How much more a bias wanders than it is taken to. A walk is not believed in before it is certain: to believe in one that
-/// is not there costs the accelerometer a factor of four.
+/// How much more a bias wanders, or a face is off, than it is taken to. Neither is believed before it is certain: to believe
+/// in a walk that is not there costs the accelerometer a factor of four.
 fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
     let (value, sigma) = excess.value()?;
     (believed || value > WALK_CERTAIN * sigma).then_some(value)

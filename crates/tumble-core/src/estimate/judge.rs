@@ -82,6 +82,9 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     if motion > MOTION_LIMIT || !estimate.converged {
         bench.warn(Reason::PoorFit { nis_per_dof: motion });
     }
+    if let Some(facet_rad) = estimate.noise.crookedness_rad() {
+        bench.warn(Reason::CrookedBox { facet_rad });
+    }
     for segment in tape.segments().iter().filter(|segment| segment.exclusion == Exclusion::Clipped) {
         let channel = segment.clipped.trailing_zeros() as u8;
         bench.warn(Reason::Clipped { channel, samples: u32::from(segment.clipped_samples) });

@@ -26,6 +26,8 @@ const SQUARE: f32 = 20e-6;
 const PIVOT: f32 = 5e-3;
 const PIVOT_FLOOR: f32 = 50e-6;
 const PIVOT_CAP: f32 = 0.05;
+/// No box is further from square than this, rad (3°).
+const CROOKED_CAP: f32 = 0.05;
 /// A bias wanders at least 1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 const WALK_FLOOR: f32 = 1e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
@@ -94,7 +96,8 @@ impl Noise {
     /// Do all parts agree to within a share?
     pub fn is_near(&self, other: &Self, share: f32) -> bool {
         let parts = |noise: &Self| {
-            [noise.bias_walk, noise.force_walk, noise.motion_scale, noise.stop_sigma_rad, noise.pivot_sigma_m]
+            let facet = noise.facet_sigma_rad.unwrap_or_default();
+            [noise.bias_walk, noise.force_walk, noise.motion_scale, noise.stop_sigma_rad, noise.pivot_sigma_m, facet]
         };
         parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))
     }
@@ -122,6 +125,18 @@ impl Noise {
     /// Pivot variance from what turns estimated of it, m².
     pub fn set_pivot_variance(&mut self, found: f32) {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
+    }
+
+    /// The box is not as square as its owner said: its faces' variance by the plates' innovations, rad².
+    pub fn set_facet_variance(&mut self, found: f32) {
+        if let Some(sigma) = &mut self.facet_sigma_rad {
+            *sigma = libm::sqrtf(found.max(0.0)).clamp(SQUARE, CROOKED_CAP);
+        }
+    }
+
+    /// How crooked the box was found to be, rad, if it was called square and is not.
+    pub fn crookedness_rad(&self) -> Option<f32> {
+        self.facet_sigma_rad.filter(|sigma| *sigma > SQUARE)
     }
 
     /// Stop variance from the closures' innovations: `found` with its own sigma, weighed against the expectation, which

@@ -18,6 +18,7 @@ impl Reason {
             Self::NotObservable { .. } => "not_observable",
             Self::Uncertain { .. } => "uncertain",
             Self::BiasDrift { .. } => "bias_drift",
+            Self::CrookedBox { .. } => "crooked_box",
             Self::SegmentExcluded { .. } => "segment_excluded",
             Self::SamplesLost { .. } => "samples_lost",
             Self::Arithmetic { .. } => "arithmetic",
@@ -64,6 +65,12 @@ impl Display for Reason {
                  minutes, out of draughts, and calibrate again.",
                 axis(usize::from(*i)),
                 degrees(*drift_rad_s)
+            ),
+            Self::CrookedBox { facet_rad } => write!(
+                f,
+                "The box was called square, but its faces are {:.2} degrees off: the axes are only as true as that. Calibrate \
+                 again without \"square\", or with a better box.",
+                degrees(*facet_rad)
             ),
             Self::SegmentExcluded { segment, nis_per_dof } => write!(
                 f,
