@@ -6,7 +6,7 @@ mod line_editor;
 mod tests;
 
 use crate::face::Face;
-use crate::procedure::{BoxFaces, Scheme, Setup, TurnStops};
+use crate::setup::{BoxFaces, Scheme, Setup, TurnStops};
 
 use error::{nearest, shorten};
 

@@ -21,10 +21,12 @@ pub mod frame;
 pub mod led;
 pub mod message;
 pub mod motion;
+mod order;
 pub mod procedure;
 pub mod record;
 pub mod sample;
 pub mod session;
+pub mod setup;
 pub mod tape;
 pub mod verify;
 

@@ -7,7 +7,6 @@
 mod act;
 mod collect;
 mod coverage;
-mod setup;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -21,9 +20,9 @@ use crate::message::{Message, Trouble};
 use crate::motion::MotionEvent;
 use crate::verify::{PoseCheck, Verification};
 
+pub use crate::setup::{BoxFaces, Scheme, Setup, TurnStops};
 pub use collect::{STILL_S, TURN_REST_S};
 pub use coverage::{ASKING_ORDER, Coverage, Direction};
-pub use setup::{BoxFaces, Scheme, Setup, TurnStops};
 
 use collect::Collect;
 use track::Track;

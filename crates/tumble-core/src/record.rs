@@ -24,8 +24,8 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use crate::calibration::{AcceptedCalibration, Calibration};
-use crate::procedure::Setup;
 use crate::sample::Ranges;
+use crate::setup::Setup;
 
 /// The format that [`encode`] writes.
 pub const VERSION: u16 = 1;

@@ -118,7 +118,7 @@ impl Cadence {
     fn learn(&mut self, gap_us: u32) {
         let _ = self.gaps_us.push(gap_us as f32);
         if self.gaps_us.is_full() {
-            let median = crate::estimate::noise::median(&mut self.gaps_us).unwrap_or(1.0);
+            let median = crate::order::median(&mut self.gaps_us).unwrap_or(1.0);
             self.period_us = (median as u32).max(1);
         }
     }

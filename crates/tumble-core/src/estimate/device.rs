@@ -7,7 +7,7 @@
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::model::Nominal;
-use super::noise::{self, Noise};
+use super::noise::Noise;
 use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
@@ -15,7 +15,8 @@ use super::sums::{Excess, SegmentNoise};
 use super::walk::Walk;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
-use crate::procedure::{BoxFaces, TurnStops};
+use crate::order::median;
+use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::Tape;
 
 /// A number is "not observable" where the data bring less than 99 % of what is known of it.
@@ -200,11 +201,11 @@ impl<const S: usize> Estimator<S> {
         if hinges.len() < MIN_HINGES {
             return true;
         }
-        let Some(median) = noise::median(&mut hinges) else { return true };
+        let Some(middle) = median(&mut hinges) else { return true };
         // A median's standard error is 1/(2 f √n), and the density f of χ²₂ at its median is 1/4.
-        let certain = median > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
+        let certain = middle > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
         let excess = match self.noise.motion_scale > 1.0 || certain {
-            true => (median / 1.386).max(1.0 / self.noise.motion_scale),
+            true => (middle / 1.386).max(1.0 / self.noise.motion_scale),
             false => 1.0,
         };
         self.noise.motion_scale *= excess;

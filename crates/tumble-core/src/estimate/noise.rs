@@ -3,7 +3,8 @@
 use heapless::Vec;
 
 use crate::DEGREE_RAD;
-use crate::procedure::{BoxFaces, TurnStops};
+use crate::order::median;
+use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::{Kind, Segment, Tape};
 
 /// MPU-9250 sheet: 0.01 °/s/√Hz. The double-sided density of a rate is half of its square.
@@ -201,17 +202,4 @@ fn pooled<const S: usize>(values: &mut Vec<(f32, f32), S>) -> Option<f32> {
         weight += count;
     }
     (weight > 0.0).then(|| sum / weight)
-}
-
-/// The middle of `values`, the upper one of two; none of none. Sorts by insertion: there are some dozens, and the library's
-/// sort takes 5 KB of flash for each type.
-pub fn median(values: &mut [f32]) -> Option<f32> {
-    for end in 1..values.len() {
-        let mut at = end;
-        while at > 0 && values[at - 1] > values[at] {
-            values.swap(at - 1, at);
-            at -= 1;
-        }
-    }
-    values.get(values.len() / 2).copied()
 }

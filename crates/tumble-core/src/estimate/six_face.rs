@@ -32,7 +32,7 @@ use super::prior::CORRECTION_SIGMA;
 use super::start;
 use crate::DEGREE_RAD;
 use crate::calibration::{Triad, TriadEstimate};
-use crate::procedure::TurnStops;
+use crate::setup::TurnStops;
 use crate::tape::Tape;
 
 mod fit;

@@ -4,7 +4,8 @@ use core::fmt::{self, Write};
 
 use super::words::{self, Arrow, Maybe, any_face, faces};
 use crate::face::{Face, FaceSet};
-use crate::procedure::{Direction, TurnStops};
+use crate::procedure::Direction;
+use crate::setup::TurnStops;
 
 /// A request, which repeats while it waits.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,8 +5,8 @@ use core::fmt::{self, Write};
 use super::words::Plain;
 use crate::STANDARD_GRAVITY_MPS2;
 use crate::command::StreamKind;
-use crate::procedure::Setup;
 use crate::sample::Ranges;
+use crate::setup::Setup;
 
 /// What the flash holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

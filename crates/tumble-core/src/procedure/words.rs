@@ -4,7 +4,7 @@ use super::{Action, Actions, Collect, Phase, Procedure, act, say};
 use crate::command::Command;
 use crate::face::Face;
 use crate::message::{Message, Note, Refused, Trouble};
-use crate::procedure::Setup;
+use crate::setup::Setup;
 
 const NO_SESSION: &str = "No session is running. Type \"calibrate\" to start one.";
 const NOTHING_TO_LEAVE: &str = "Nothing is running, so there is nothing to leave.";

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::*;
 use crate::calibration::{Fit, Frame, Triad, TriadEstimate};
-use crate::procedure::{BoxFaces, TurnStops};
+use crate::setup::{BoxFaces, TurnStops};
 
 fn triad(offset: f32) -> TriadEstimate {
     let mut observable = [[true; 3]; 3];

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{FirmwareVersion, Origin};
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
-use crate::procedure::{BoxFaces, Scheme, Setup, TurnStops};
 use crate::sample::Ranges;
+use crate::setup::{BoxFaces, Scheme, Setup, TurnStops};
 
 /// `postcard` writes the fields in this order: `u32` and `u16` as varints, `u8` and `bool` as a byte, `f32` as four bytes
 /// little-endian, arrays without a length.

@@ -4,7 +4,7 @@ use super::{Setting, SixFace, Tilt, single};
 use crate::STANDARD_GRAVITY_MPS2;
 use crate::estimate::Conditions;
 use crate::face::Face;
-use crate::procedure::{BoxFaces, TurnStops};
+use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
 
 type TestTape = Tape<3000, 64>;

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::command::{CalAction, WORDS};
-use crate::procedure::{BoxFaces, Setup};
 use crate::record::RecordError;
+use crate::setup::{BoxFaces, Setup};
 
 const SETUP: Setup = Setup { stops: TurnStops::Fenced, box_faces: BoxFaces::Square, scheme: Scheme::Double };
 
