@@ -119,7 +119,7 @@ impl Narrator {
         let what = |key| line.value(key).unwrap_or("");
         let text = match what("want") {
             "place" => format!("asks: put one of {} up", what("faces")),
-            "hold" => format!("asks: leave {} alone", what("face")),
+            "hold" => format!("asks: leave {} alone", line.value("face").unwrap_or("it")),
             "turn" => format!("asks: turn {} once round, {}", what("face"), what("direction")),
             "still" => format!("asks: lay it down ({})", what("why")),
             "pose" => format!("asks: a fresh pose, {} of {} done", line.value("done").unwrap_or("0"), what("of")),
