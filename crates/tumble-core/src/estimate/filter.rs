@@ -170,17 +170,6 @@ impl Filter {
         }
     }
 
-    /// What `observed = row · state + noise` would say that is new, without taking it in.
-    pub fn innovation(&self, row: &Row, observed: f32, variance: f32) -> Innovation {
-        let gain = self.covariance_times(row);
-        let mut innovation = Innovation { value: observed, variance };
-        for (index, value) in row.entries() {
-            innovation.value -= value * self.state[index];
-            innovation.variance += value * gain[index];
-        }
-        innovation
-    }
-
     /// Takes in `observed = row · state + noise`.
     pub fn observe(&mut self, row: &Row, observed: f32, variance: f32) -> Innovation {
         let mut column = self.covariance_times(row);

@@ -26,11 +26,6 @@ pub struct Observation {
     pub row: Row,
 }
 
-/// `[v×]`.
-pub fn cross_matrix(v: &Vector3<f32>) -> Matrix3<f32> {
-    v.cross_matrix()
-}
-
 impl Nominal {
     /// Rotation vector of a record, calibrated, rad, frame b.
     pub fn rotation(&self, record: &Record) -> Vector3<f32> {
@@ -176,8 +171,8 @@ pub fn fence(now: &UnitQuaternion<f32>, first: &UnitQuaternion<f32>, normal_n: &
 
 /// Lever matrix `[ω×]² + [ω̇×]`.
 pub fn lever(rate: &Vector3<f32>, acceleration: &Vector3<f32>) -> Matrix3<f32> {
-    let w = cross_matrix(rate);
-    w * w + cross_matrix(acceleration)
+    let w = rate.cross_matrix();
+    w * w + acceleration.cross_matrix()
 }
 
 #[cfg(test)]
