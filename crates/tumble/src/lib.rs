@@ -6,6 +6,7 @@
 
 pub mod calibrate;
 pub mod cli;
+pub mod diagnose;
 pub mod export;
 pub mod output;
 pub mod recording;

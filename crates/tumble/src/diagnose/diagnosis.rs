@@ -1,0 +1,172 @@
+//! The answer: the contract's JSON object, and what pictures and words are made of.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+/// In one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The nominal model explains the recording.
+    NothingMissing,
+    /// Effects of the catalogue explain what the nominal model does not.
+    EffectFound,
+    /// Something is left that no effect of the catalogue explains.
+    UnknownEffect,
+    /// The recording supports no verdict.
+    NotTestable,
+}
+
+/// All of it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Diagnosis {
+    /// `tumble-diagnosis`.
+    pub format: &'static str,
+    /// 1.
+    pub version: u32,
+    /// In one word.
+    pub verdict: Verdict,
+    /// The strongest first.
+    pub effects: Vec<Found>,
+    /// What is left.
+    pub unknown: Option<Unknown>,
+    /// Mean squared whitened residuals.
+    pub fit: FitReport,
+    /// What could have been seen.
+    pub detection_limits: Vec<Limit>,
+    /// Sentences, the most important first.
+    pub reasons: Vec<String>,
+}
+
+/// An effect.
+#[derive(Clone, Debug, Serialize)]
+pub struct Found {
+    /// As in the contract.
+    pub id: String,
+    /// For a person.
+    pub name: String,
+    /// As a formula.
+    pub equation: String,
+    /// ln of the Bayes factor against the model without it.
+    pub evidence: f64,
+    /// What explains nearly as much.
+    pub runner_up: Option<RunnerUp>,
+    /// What explains as much.
+    pub tied_with: Vec<String>,
+    /// The experiment that would tell them apart.
+    pub separate_by: String,
+    /// With sigmas.
+    pub parameters: Vec<Value>,
+    /// Place.
+    #[serde(rename = "where")]
+    pub place: Place,
+    /// What the data sheet says.
+    pub typical: String,
+    /// Mean squared residual of rows left out of the fit, by halves of every position, both ways; none for gates.
+    pub held_out: Option<HeldOut>,
+}
+
+/// Before and after, on data that the parameters were not fitted to.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct HeldOut {
+    /// Without the effect.
+    pub before: f64,
+    /// With it.
+    pub after: f64,
+    /// Probability of parameters as different between the halves, if they are constant (Chow).
+    pub constancy_p: f64,
+}
+
+/// A rival.
+#[derive(Clone, Debug, Serialize)]
+pub struct RunnerUp {
+    /// As in the contract.
+    pub id: String,
+    /// By how much its evidence is less.
+    pub gap: f64,
+}
+
+/// A number.
+#[derive(Clone, Debug, Serialize)]
+pub struct Value {
+    /// Of the parameter.
+    pub name: String,
+    /// In its unit.
+    pub value: f64,
+    /// One sigma.
+    pub sigma: f64,
+    /// Of both.
+    pub unit: String,
+}
+
+/// Channel, segment, time.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Place {
+    /// `gyro_x` … `accel_z`.
+    pub channels: Vec<String>,
+    /// Numbers as `tumble calibrate --json` has them.
+    pub segments: Vec<usize>,
+    /// By the recording's own stamps.
+    pub start_s: f64,
+    /// Likewise.
+    pub end_s: f64,
+}
+
+/// What no effect explains.
+#[derive(Clone, Debug, Serialize)]
+pub struct Unknown {
+    /// Place.
+    #[serde(rename = "where")]
+    pub place: Place,
+    /// What it follows.
+    pub correlates_with: Vec<String>,
+    /// Effects that it is like.
+    pub resembles: Vec<String>,
+    /// Of so much by chance.
+    pub p_value: f64,
+}
+
+/// One figure on the data fitted, one on the data left out.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Pair {
+    /// Fitted to.
+    pub train: f64,
+    /// Left out of the fit.
+    pub held_out: f64,
+}
+
+/// Before and after.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct FitReport {
+    /// The nominal model.
+    pub before: Pair,
+    /// With what was found.
+    pub after: Pair,
+    /// Mean squares by channel.
+    pub per_channel: BTreeMap<String, ChannelFit>,
+}
+
+/// Of one channel.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct ChannelFit {
+    /// The nominal model.
+    pub before: f64,
+    /// With what was found.
+    pub after: f64,
+}
+
+/// What this recording could have shown.
+#[derive(Clone, Debug, Serialize)]
+pub struct Limit {
+    /// As in the contract.
+    pub id: String,
+    /// Size found with 95 % certainty.
+    pub limit: f64,
+    /// Of the limit.
+    pub unit: String,
+    /// Could it have shown at a size that occurs?
+    pub testable: bool,
+    /// Why not, or what it is mistaken for.
+    pub why: String,
+}

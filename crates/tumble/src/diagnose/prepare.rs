@@ -1,0 +1,80 @@
+//! From a recording to its twin.
+
+use tumble_core::estimate::{Conditions, Estimate, start};
+use tumble_core::procedure::BoxFaces;
+use tumble_core::tape::Segment;
+
+use super::twin::Twin;
+use super::twin::data::{Raw, stretches};
+use super::twin::noise::Noise;
+use super::twin::trajectory::Nominal;
+use crate::calibrate::{self, HostTape, Session};
+use crate::recording::{Inference, Reading, Recording};
+
+/// Why there is no twin.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NoTwin(pub String);
+
+/// A recording through the board's segmenter and estimator, and the twin that starts from its result.
+pub struct Prepared {
+    /// The twin.
+    pub twin: Twin,
+    /// Segments as the board found them.
+    pub tape: Box<HostTape>,
+    /// The board's estimate; none where its arithmetic broke down or there was nothing to estimate from.
+    pub estimate: Option<Estimate>,
+    /// Table and box.
+    pub conditions: Conditions,
+}
+
+/// Runs segmenter, estimator and the twin's own fit.
+///
+/// # Errors
+/// If there is nothing to estimate from, or the arithmetic breaks down: in words.
+pub fn prepare(recording: &Recording, conditions: Conditions) -> Result<Prepared, NoTwin> {
+    let inference = Inference::of(recording);
+    let readings = recording.samples(&inference);
+    let origin_s = recording.origin_s();
+    let samples = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
+    prepare_samples(samples, &readings, origin_s, inference.missing(), conditions)
+}
+
+/// The same from samples: `readings` are what the estimator takes, `samples` the same in `f64`.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_samples(
+    samples: Vec<Raw>,
+    readings: &[Reading],
+    origin_s: f64,
+    lost: u32,
+    conditions: Conditions,
+) -> Result<Prepared, NoTwin> {
+    let session = Session { readings, origin_s, lost, conditions };
+    let (tape, _) = session.tape(1.0);
+    if !tape.segments().iter().any(Segment::is_usable_still) {
+        return Err(NoTwin("no rest was found: hold the sensor still for two seconds now and then".into()));
+    }
+    // The board's result is the better start; where it has none, the closed form is near enough for a fit in `f64`.
+    let estimate = calibrate::estimate(&tape, conditions, &mut |_| {}).ok().map(|(estimate, _)| estimate);
+    let gravity = conditions.gravity_mps2;
+    let device_noise = match &estimate {
+        Some(estimate) => estimate.noise,
+        None => tumble_core::estimate::Noise::from_rests(&tape, conditions.stops, conditions.faces),
+    };
+    let start = match &estimate {
+        Some(Estimate { calibration, .. }) => {
+            Nominal::new(&calibration.gyroscope.triad, &calibration.accelerometer.triad)
+        }
+        None => {
+            let start = start::nominal(&tape, gravity);
+            Nominal::new(&start.gyro, &start.accel)
+        }
+    };
+    let stretches = stretches(tape.segments(), &samples, &device_noise);
+    let noise = Noise::new(&device_noise, conditions.stops);
+    let triangular = conditions.faces == BoxFaces::Unknown;
+    let gravity_mps2 = f64::from(conditions.gravity_mps2);
+    let twin = Twin::new(samples, stretches, start, noise, gravity_mps2, triangular);
+    Ok(Prepared { twin, tape, estimate, conditions })
+}

@@ -1,0 +1,233 @@
+//! The work bench of a search: the twin, all columns, and what has been accepted so far.
+
+use std::ops::Range;
+
+use super::generic::{Family, families};
+use super::ledger::{Fit, Ledger, Term, log_mean};
+use crate::diagnose::catalogue::{Effect, Model, Parameter, STRUCTURAL};
+use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::data::Raw;
+use crate::diagnose::twin::influence::Influence;
+use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
+use crate::diagnose::twin::rows::Rows;
+
+/// Levels of wander that a healthy sensor has, as factors on the floors' variance: 1, 3 and 10 mdps in 100 s, and 10, 30 and
+/// 100 µg. What is more is an effect.
+pub const HEALTHY: [f64; 3] = [1.0, 9.0, 100.0];
+/// Levels that count as an effect.
+pub const WANDERING: [f64; 6] = [400.0, 1600.0, 6400.0, 25_600.0, 102_400.0, 409_600.0];
+
+/// A variant with its place among the columns.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// What is held.
+    pub setting: Option<(&'static str, f64, &'static str)>,
+    /// Its numbers.
+    pub parameters: Vec<Parameter>,
+    /// Its columns.
+    pub columns: Range<usize>,
+}
+
+/// A candidate.
+pub struct Candidate {
+    /// Of the catalogue.
+    pub effect: &'static Effect,
+    /// None for walks and what cannot show.
+    pub variants: Vec<Placed>,
+    /// `(gyro, unit_si, unit)`.
+    pub walk: Option<(bool, f64, &'static str)>,
+    /// Why it cannot show.
+    pub absent: Option<&'static str>,
+}
+
+/// What is accepted.
+#[derive(Clone, Debug)]
+pub struct Accepted {
+    /// Which candidate.
+    pub candidate: usize,
+    /// Which of its variants.
+    pub variant: usize,
+    /// Taken out of the samples already.
+    pub taken: Vec<f64>,
+}
+
+/// All of it.
+pub struct Bench {
+    /// Fitted, with what is accepted taken out.
+    pub twin: Twin,
+    /// Readings as they were.
+    pub original: Vec<Raw>,
+    /// All columns.
+    pub influences: Vec<Influence>,
+    /// In the catalogue's order.
+    pub candidates: Vec<Candidate>,
+    /// Shapes that detect.
+    pub families: Vec<(Family, Range<usize>)>,
+    /// So far.
+    pub accepted: Vec<Accepted>,
+}
+
+impl Bench {
+    /// All candidates for a twin, except those in `without`.
+    pub fn new(twin: Twin, without: &[String]) -> Self {
+        let mut influences = Vec::new();
+        let mut place = |more: Vec<Influence>| {
+            let first = influences.len();
+            influences.extend(more);
+            first..influences.len()
+        };
+        let mut candidates = Vec::new();
+        for effect in STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id)) {
+            let mut candidate = Candidate { effect, variants: Vec::new(), walk: None, absent: None };
+            match (effect.model)(&twin) {
+                Model::Shift(variants) => {
+                    candidate.variants = variants
+                        .into_iter()
+                        .map(|variant| Placed {
+                            setting: variant.setting,
+                            parameters: variant.parameters,
+                            columns: place(variant.influences),
+                        })
+                        .collect();
+                }
+                Model::Walk { gyro, unit_si, unit } => candidate.walk = Some((gyro, unit_si, unit)),
+                Model::Absent(why) => candidate.absent = Some(why),
+            }
+            candidates.push(candidate);
+        }
+        let families = families(&twin)
+            .into_iter()
+            .map(|mut family| {
+                let columns = place(std::mem::take(&mut family.influences));
+                (family, columns)
+            })
+            .collect();
+        let original = twin.samples.clone();
+        Self { twin, original, influences, candidates, families, accepted: Vec::new() }
+    }
+
+    /// Number of columns that belong to candidates; generic shapes come after.
+    pub fn candidate_columns(&self) -> usize {
+        self.families.first().map_or(self.influences.len(), |(_, columns)| columns.start)
+    }
+
+    /// Terms of a variant, what is taken out of the samples counted.
+    pub fn terms(&self, candidate: usize, variant: usize, taken: &[f64]) -> Vec<Term> {
+        let placed = &self.candidates[candidate].variants[variant];
+        let term = |(i, column): (usize, usize)| Term {
+            column,
+            width: placed.parameters[i].width,
+            mean: -taken.get(i).copied().unwrap_or(0.0),
+        };
+        placed.columns.clone().enumerate().map(term).collect()
+    }
+
+    /// Terms of all that is accepted, but for one.
+    pub fn accepted_terms(&self, but: Option<usize>) -> Vec<Term> {
+        let chosen = self.accepted.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+        chosen
+            .filter(|(_, accepted)| self.candidates[accepted.candidate].walk.is_none())
+            .flat_map(|(_, accepted)| self.terms(accepted.candidate, accepted.variant, &accepted.taken))
+            .collect()
+    }
+
+    /// A candidate beside other terms: evidence over its variants, and the best of them.
+    pub fn weigh(&self, ledger: &Ledger, others: &[Term], candidate: usize) -> (f64, usize, Fit) {
+        let count = self.candidates[candidate].variants.len();
+        let mut best: Option<(f64, usize, Fit)> = None;
+        let mut all = Vec::with_capacity(count);
+        for variant in 0..count {
+            let mut terms = others.to_vec();
+            terms.extend(self.terms(candidate, variant, &[]));
+            let fit = ledger.fit(&terms);
+            all.push(fit.evidence);
+            if best.as_ref().is_none_or(|best| fit.evidence > best.0) {
+                best = Some((fit.evidence, variant, fit));
+            }
+        }
+        let (_, variant, fit) = best.unwrap_or_else(|| (f64::NEG_INFINITY, 0, ledger.fit(others)));
+        (log_mean(&all), variant, fit)
+    }
+
+    /// Rows with all candidates' columns under a noise.
+    pub fn rows(&mut self, noise: Noise) -> Rows {
+        self.twin.noise = noise;
+        self.twin.rows(&self.influences[..self.candidate_columns()])
+    }
+
+    /// Takes the accepted effects' best numbers out of the samples and fits the nominal anew: the non-linear refit.
+    pub fn refit(&mut self) {
+        for _ in 0..2 {
+            let terms = self.accepted_terms(None);
+            let fit = self.fit_alone(self.twin.noise, &terms);
+            let mut next = 0;
+            for accepted in &mut self.accepted {
+                let Some(placed) = self.candidates[accepted.candidate].variants.get(accepted.variant) else { continue };
+                for (i, column) in placed.columns.clone().enumerate() {
+                    if matches!(self.influences[column], Influence::Reading(_)) {
+                        accepted.taken[i] += fit.theta[next];
+                    }
+                    next += 1;
+                }
+            }
+            self.take_out();
+            self.twin.fit();
+        }
+    }
+
+    fn take_out(&mut self) {
+        let columns: Vec<(usize, f64)> = self
+            .accepted
+            .iter()
+            .filter_map(|accepted| {
+                let placed = self.candidates[accepted.candidate].variants.get(accepted.variant)?;
+                Some(placed.columns.clone().zip(accepted.taken.iter().copied()))
+            })
+            .flatten()
+            .filter(|(_, taken)| *taken != 0.0)
+            .collect();
+        for (index, raw) in self.twin.samples.iter_mut().enumerate() {
+            *raw = self.original[index];
+            let Some(moment) = self.twin.trajectory.moments.get(index) else { continue };
+            for &(column, taken) in &columns {
+                if let Influence::Reading(reading) = &self.influences[column] {
+                    let push = reading(moment);
+                    raw.rate -= push.rate * taken;
+                    raw.force -= push.force * taken;
+                }
+            }
+        }
+    }
+}
+
+/// The floors at a level, for gyroscope and accelerometer.
+pub fn with_walks(noise: &Noise, gyro: f64, accel: f64) -> Noise {
+    Noise { bias_walk: gyro * BIAS_WALK_FLOOR, force_walk: accel * FORCE_WALK_FLOOR, ..*noise }
+}
+
+impl Bench {
+    /// The model of some terms under a noise. Only their columns are carried: a hundred times faster than all.
+    pub fn fit_alone(&mut self, noise: Noise, terms: &[Term]) -> Fit {
+        let (columns, influences) = self.borrow_columns(terms);
+        self.twin.noise = noise;
+        let rows = self.twin.rows(&influences);
+        self.return_columns(&columns, influences);
+        let local: Vec<_> = terms.iter().enumerate().map(|(k, term)| Term { column: k, ..*term }).collect();
+        Ledger::new(&rows, |_| true).fit(&local)
+    }
+
+    /// Lends the influences of some terms, in their order.
+    fn borrow_columns(&mut self, terms: &[Term]) -> (Vec<usize>, Vec<Influence>) {
+        let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+        let lent = columns.iter().map(|&column| std::mem::replace(&mut self.influences[column], Influence::None));
+        let lent = lent.collect();
+        (columns, lent)
+    }
+
+    /// Takes them back.
+    fn return_columns(&mut self, columns: &[usize], influences: Vec<Influence>) {
+        for (&column, influence) in columns.iter().zip(influences) {
+            self.influences[column] = influence;
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! Shapes that detect what the catalogue cannot explain. They are never used to name it.
+
+use nalgebra::Vector3;
+
+use crate::diagnose::catalogue::{AXES, DPS, G, reading};
+use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::data::Deed;
+use crate::diagnose::twin::influence::{Influence, Push};
+use crate::diagnose::twin::rows::CHANNELS;
+use crate::diagnose::twin::trajectory::Moment;
+
+/// Shapes of one kind on one triad.
+pub struct Family {
+    /// What it follows, in words.
+    pub name: String,
+    /// Gyroscope or accelerometer.
+    pub gyro: bool,
+    /// Its columns: (channel, what).
+    pub members: Vec<(usize, String)>,
+    /// One a member.
+    pub influences: Vec<Influence>,
+}
+
+type Shape = Box<dyn Fn(&Moment) -> f64 + Send + Sync>;
+type Shapes = Vec<(String, Shape)>;
+
+/// All families for a recording.
+pub fn families(twin: &Twin) -> Vec<Family> {
+    let end_s = twin.samples.last().map_or(1.0, |raw| raw.t_s).max(1.0);
+    let groups: Vec<(&str, fn(f64) -> Shapes)> = vec![
+        ("specific force", |_| vector("f", |moment| moment.force / G)),
+        ("products of forces", |_| pairs("f", |moment| moment.force / G)),
+        ("cubes of forces", |_| cubes("f", |moment| moment.force / G)),
+        ("rate", |_| vector("w", |moment| moment.rate)),
+        ("products of rates", |_| pairs("w", |moment| moment.rate)),
+        ("cubes of rates", |_| cubes("w", |moment| moment.rate)),
+        ("size of the rate", |_| sizes()),
+        ("angular acceleration", |_| vector("dw/dt", |moment| moment.acceleration)),
+        ("force times rate", |_| mixed()),
+        ("time", trends),
+        ("slow oscillation", oscillations),
+        ("time since the last motion", |_| after_motion()),
+        ("angle of the turn", |_| harmonics()),
+        ("heading", |_| vector("north", north).into_iter().chain(vector("east", east)).collect()),
+        ("temperature", |_| vec![("T".into(), Box::new(|moment: &Moment| moment.warmth_degc) as Shape)]),
+    ];
+    let mut families = Vec::new();
+    for (name, shapes) in groups {
+        for gyro in [true, false] {
+            families.push(family(name, gyro, || shapes(end_s)));
+        }
+    }
+    families.push(previous_face(twin));
+    families
+}
+
+fn family(name: &str, gyro: bool, shapes: impl Fn() -> Shapes) -> Family {
+    let first = if gyro { 0 } else { 3 };
+    let unit = if gyro { DPS } else { 1e-3 * G };
+    let (mut members, mut influences) = (Vec::new(), Vec::new());
+    for channel in first..first + 3 {
+        for (what, shape) in shapes() {
+            members.push((channel, what));
+            influences.push(reading(move |moment| Push::channel(channel, unit * shape(moment))));
+        }
+    }
+    Family { name: name.into(), gyro, members, influences }
+}
+
+fn vector(what: &'static str, value: fn(&Moment) -> Vector3<f64>) -> Shapes {
+    (0..3).map(|i| (format!("{what}_{}", AXES[i]), Box::new(move |m: &Moment| value(m)[i]) as Shape)).collect()
+}
+
+fn pairs(what: &'static str, value: fn(&Moment) -> Vector3<f64>) -> Shapes {
+    let pair = |(i, j): (usize, usize)| {
+        let name = format!("{what}_{}*{what}_{}", AXES[i], AXES[j]);
+        (name, Box::new(move |m: &Moment| value(m)[i] * value(m)[j]) as Shape)
+    };
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().map(pair).collect()
+}
+
+fn cubes(what: &'static str, value: fn(&Moment) -> Vector3<f64>) -> Shapes {
+    let cube = |i: usize| (format!("{what}_{}^3", AXES[i]), Box::new(move |m: &Moment| value(m)[i].powi(3)) as Shape);
+    (0..3).map(cube).collect()
+}
+
+fn sizes() -> Shapes {
+    let mut shapes: Shapes =
+        (0..3).map(|i| (format!("|w_{}|", AXES[i]), Box::new(move |m: &Moment| m.rate[i].abs()) as Shape)).collect();
+    shapes.push(("|w|".into(), Box::new(|m: &Moment| m.rate.norm())));
+    shapes.extend(
+        (0..3)
+            .map(|i| (format!("sign(w_{})", AXES[i]), Box::new(move |m: &Moment| (m.rate[i] / 0.02).tanh()) as Shape)),
+    );
+    shapes
+}
+
+fn mixed() -> Shapes {
+    let pair = |i: usize, j: usize| {
+        let name = format!("f_{}*w_{}", AXES[i], AXES[j]);
+        (name, Box::new(move |m: &Moment| m.force[i] / G * m.rate[j]) as Shape)
+    };
+    (0..3).flat_map(|i| (0..3).map(move |j| pair(i, j))).collect()
+}
+
+fn trends(end_s: f64) -> Shapes {
+    let mut shapes: Shapes =
+        (1..=3).map(|k| (format!("t^{k}"), Box::new(move |m: &Moment| (m.t_s / end_s).powi(k)) as Shape)).collect();
+    shapes.extend(
+        (0..3).map(|i| {
+            (format!("t*w_{}", AXES[i]), Box::new(move |m: &Moment| (m.t_s / end_s - 0.5) * m.rate[i]) as Shape)
+        }),
+    );
+    shapes
+}
+
+fn oscillations(end_s: f64) -> Shapes {
+    // One period in the recording to one in 5 s, each √2 of the last.
+    let mut shapes: Shapes = Vec::new();
+    let mut period_s = end_s;
+    while period_s > 5.0 {
+        let w = std::f64::consts::TAU / period_s;
+        shapes.push((format!("sin(2 pi t/{period_s:.0} s)"), Box::new(move |m: &Moment| (w * m.t_s).sin())));
+        shapes.push((format!("cos(2 pi t/{period_s:.0} s)"), Box::new(move |m: &Moment| (w * m.t_s).cos())));
+        period_s /= std::f64::consts::SQRT_2;
+    }
+    shapes
+}
+
+fn after_motion() -> Shapes {
+    [0.5, 2.0, 8.0]
+        .into_iter()
+        .map(|tau_s: f64| {
+            let decays = move |m: &Moment| match m.deed {
+                Deed::Rest { .. } => (-m.rested_s / tau_s).exp(),
+                _ => 0.0,
+            };
+            (format!("exp(-rested/{tau_s} s)"), Box::new(decays) as Shape)
+        })
+        .collect()
+}
+
+fn harmonics() -> Shapes {
+    [1.0, 2.0]
+        .into_iter()
+        .flat_map(|order: f64| {
+            let turning = |m: &Moment| matches!(m.deed, Deed::Turn { .. });
+            let sine = move |m: &Moment| if turning(m) { (order * m.turned_rad).sin() } else { 0.0 };
+            let cosine = move |m: &Moment| if turning(m) { (order * m.turned_rad).cos() - 1.0 } else { 0.0 };
+            [
+                (format!("sin({order} angle)"), Box::new(sine) as Shape),
+                (format!("cos({order} angle)"), Box::new(cosine) as Shape),
+            ]
+        })
+        .collect()
+}
+
+fn north(moment: &Moment) -> Vector3<f64> {
+    moment.attitude.inverse_transform_vector(&Vector3::y())
+}
+
+fn east(moment: &Moment) -> Vector3<f64> {
+    moment.attitude.inverse_transform_vector(&Vector3::x())
+}
+
+/// Readings that remember how the sensor lay before.
+fn previous_face(twin: &Twin) -> Family {
+    let mut before = Vec::new();
+    let (mut last, mut current) = (Vector3::zeros(), Vector3::zeros());
+    for stretch in &twin.stretches {
+        if stretch.is_rest() {
+            let force = twin.trajectory.moments[stretch.samples.start].force / G;
+            if (force - current).norm() > 0.3 {
+                last = current;
+                current = force;
+            }
+        }
+        before.resize(stretch.number + 1, last);
+    }
+    let before = std::sync::Arc::new(before);
+    let (mut members, mut influences) = (Vec::new(), Vec::new());
+    for (channel, name) in CHANNELS.iter().enumerate() {
+        for (axis, letter) in AXES.iter().enumerate() {
+            let before = before.clone();
+            let unit = if channel < 3 { DPS } else { 1e-3 * G };
+            members.push((channel, format!("previous f_{letter} on {name}")));
+            influences.push(reading(move |moment| {
+                let value = before.get(moment.stretch).map_or(0.0, |force: &Vector3<f64>| force[axis]);
+                Push::channel(channel, unit * value)
+            }));
+        }
+    }
+    Family { name: "the face before".into(), gyro: false, members, influences }
+}

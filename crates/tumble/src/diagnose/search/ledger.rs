@@ -1,0 +1,151 @@
+//! Evidence of a linear model of the rows, from sums of products that are formed once.
+//!
+//! Rows `e = E θ + noise`, prior `θ ~ N(m, diag(w²))`. In each class of rows the noise's sigma is 1, or larger if the rows
+//! themselves say so: it is maximised over `s ≥ 1`, so that a class that scatters more than the model believes costs
+//! every candidate alike and passes for no effect. For the rest θ is integrated out exactly:
+//!
+//! `ln p = −½ Σ_c [N_c ln s_c² + RSS_c / s_c²] − ½ Σ (θ̂−m)²/w² − ½ ln det(I + W Eᵀ S⁻² E) − Σ ln σ`.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::diagnose::twin::rows::{Address, Class, Rows};
+
+/// Rounds of weights and estimates: the weights settle geometrically.
+const ROUNDS: usize = 4;
+
+struct Sums {
+    count: f64,
+    squares: f64,
+    moments: DVector<f64>,
+    gram: DMatrix<f64>,
+}
+
+/// Products of rows and responses, class by class.
+pub struct Ledger {
+    classes: Vec<Sums>,
+    log_sigma: f64,
+}
+
+/// One column of a model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Term {
+    /// In the responses.
+    pub column: usize,
+    /// Prior's sigma.
+    pub width: f64,
+    /// Prior's mean: minus what has been taken out of the samples already.
+    pub mean: f64,
+}
+
+/// A model's best numbers.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// ln p.
+    pub evidence: f64,
+    /// θ̂, in the order of the terms.
+    pub theta: DVector<f64>,
+    /// Its covariance.
+    pub covariance: DMatrix<f64>,
+    /// s² of every class, in the order of [`Class::ALL`].
+    pub scales: [f64; 6],
+}
+
+impl Ledger {
+    /// Of the rows that `keep` keeps.
+    pub fn new(rows: &Rows, keep: impl Fn(&Address) -> bool) -> Self {
+        let classes = Class::ALL.map(|class| {
+            let chosen: Vec<usize> =
+                (0..rows.at.len()).filter(|&i| rows.at[i].class == class && keep(&rows.at[i])).collect();
+            let responses = rows.responses.select_rows(&chosen);
+            let values = rows.values.select_rows(&chosen);
+            Sums {
+                count: chosen.len() as f64,
+                squares: values.norm_squared(),
+                moments: responses.tr_mul(&values),
+                gram: responses.transpose() * &responses,
+            }
+        });
+        Self { classes: classes.into(), log_sigma: rows.log_sigma }
+    }
+
+    /// The model of these terms; an empty one is the null.
+    pub fn fit(&self, terms: &[Term]) -> Fit {
+        let n = terms.len();
+        let mut fit = Fit {
+            evidence: f64::NEG_INFINITY,
+            theta: DVector::zeros(n),
+            covariance: DMatrix::zeros(n, n),
+            scales: [1.0; 6],
+        };
+        let (grams, moments) = self.chosen(terms);
+        for round in 0..ROUNDS {
+            let Some(log_det) = solve(terms, &grams, &moments, &mut fit) else { return fit };
+            let prior: f64 = terms
+                .iter()
+                .zip(fit.theta.iter())
+                .map(|(term, theta)| ((theta - term.mean) / term.width).powi(2))
+                .sum();
+            let mut evidence = -0.5 * prior - 0.5 * log_det - self.log_sigma;
+            let mut scales = [1.0; 6];
+            for (k, class) in self.classes.iter().enumerate() {
+                let left = class.squares - 2.0 * fit.theta.dot(&moments[k]) + fit.theta.dot(&(&grams[k] * &fit.theta));
+                scales[k] = (left / class.count.max(1.0)).max(1.0);
+                evidence -= 0.5 * (class.count * f64::ln(fit.scales[k]) + left / fit.scales[k]);
+            }
+            fit.evidence = evidence;
+            if round + 1 < ROUNDS {
+                fit.scales = scales;
+            }
+        }
+        fit
+    }
+
+    /// Weighted `EᵀE` of two sets of columns, at these scales.
+    pub fn gram(&self, scales: &[f64; 6], rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+        let mut sum = DMatrix::zeros(rows.len(), columns.len());
+        for (class, scale) in self.classes.iter().zip(scales) {
+            sum += DMatrix::from_fn(rows.len(), columns.len(), |i, j| class.gram[(rows[i], columns[j])] / scale);
+        }
+        sum
+    }
+
+    fn chosen(&self, terms: &[Term]) -> (Vec<DMatrix<f64>>, Vec<DVector<f64>>) {
+        let n = terms.len();
+        let column = |i: usize| terms[i].column;
+        self.classes
+            .iter()
+            .map(|class| {
+                let gram = DMatrix::from_fn(n, n, |i, j| class.gram[(column(i), column(j))]);
+                (gram, DVector::from_fn(n, |i, _| class.moments[column(i)]))
+            })
+            .unzip()
+    }
+}
+
+/// θ̂ and its covariance at the fit's scales; `ln det(I + W A)`.
+fn solve(terms: &[Term], grams: &[DMatrix<f64>], moments: &[DVector<f64>], fit: &mut Fit) -> Option<f64> {
+    let n = terms.len();
+    let mut matrix = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| terms[i].width.powi(-2)));
+    let mut right = DVector::from_fn(n, |i, _| terms[i].mean * terms[i].width.powi(-2));
+    for (k, (gram, moment)) in grams.iter().zip(moments).enumerate() {
+        matrix += gram / fit.scales[k];
+        right += moment / fit.scales[k];
+    }
+    // Scaled to unit widths: parameters differ by many decades.
+    let widths = DVector::from_fn(n, |i, _| terms[i].width);
+    let scaled = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] * widths[i] * widths[j]);
+    let cholesky = scaled.cholesky()?;
+    fit.theta = cholesky.solve(&right.component_mul(&widths)).component_mul(&widths);
+    let inverse = cholesky.inverse();
+    fit.covariance = DMatrix::from_fn(n, n, |i, j| inverse[(i, j)] * widths[i] * widths[j]);
+    Some(2.0 * cholesky.l_dirty().diagonal().iter().map(|v| v.ln()).sum::<f64>())
+}
+
+/// `ln mean exp`.
+pub fn log_mean(values: &[f64]) -> f64 {
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !most.is_finite() {
+        return most;
+    }
+    most + (values.iter().map(|value| (value - most).exp()).sum::<f64>() / values.len() as f64).ln()
+}

@@ -1,0 +1,7 @@
+//! The search: every candidate against one nominal fit, with thresholds that chance on this very recording sets.
+
+pub mod bench;
+pub mod generic;
+pub mod ledger;
+pub mod null;
+pub mod select;

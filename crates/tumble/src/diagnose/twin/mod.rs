@@ -1,0 +1,178 @@
+//! The twin: a simulated session that follows a recording, predicts every channel from nothing but the nominal sensor and
+//! the motion it found, and says by how much each prediction failed, in sigmas.
+//!
+//! The rows it returns are innovations of a Kalman filter over the full error state. Under the nominal model they are
+//! independent standard normals, with every nuisance (calibration, attitude, lever arm, stops) already marginalised; a
+//! candidate effect of size θ shifts them by `responses · θ`. That makes every test a linear regression.
+
+pub mod data;
+pub mod influence;
+pub mod noise;
+pub mod rows;
+pub mod state;
+pub mod trajectory;
+mod walk;
+
+use data::{Deed, Raw, Stretch};
+use influence::Influence;
+use noise::Noise;
+use rows::Rows;
+use state::State;
+use trajectory::{Nominal, Trajectory};
+
+/// Passes until nothing moves: each is a Gauss–Newton step from the device's result, which is near.
+const PASSES: usize = 5;
+
+/// What was known before, about the start.
+#[derive(Clone, Copy, Debug)]
+pub struct Prior {
+    /// Where it stands.
+    pub start: Nominal,
+    /// Frame "accelerometer": elements above the diagonal are zero by definition.
+    pub triangular: bool,
+    /// Earth's rate, each component, rad/s.
+    pub earth_sigma: f64,
+}
+
+/// Prior of a correction's element (`docs/method.md`, "Priors and observability").
+const CORRECTION_SIGMA: f64 = 0.06;
+const GYRO_BIAS_SIGMA: f64 = 0.1;
+const ACCEL_BIAS_SIGMA: f64 = 0.8;
+/// Earth's rate may point anywhere: 7.29e-5 rad/s over √3.
+const EARTH_SIGMA: f64 = 4.2e-5;
+
+impl Prior {
+    /// Mean and covariance of the parameters about `nominal`.
+    fn apply(&self, mut state: State, nominal: &Nominal) -> State {
+        state.reset(state::GYRO, 9, CORRECTION_SIGMA);
+        state.reset(state::ACCEL, 9, CORRECTION_SIGMA);
+        state.reset(state::GYRO_BIAS, 3, GYRO_BIAS_SIGMA);
+        state.reset(state::ACCEL_BIAS, 3, ACCEL_BIAS_SIGMA);
+        state.reset(state::LEVER, 3, noise::LEVER_SIGMA_M);
+        let difference = [
+            (state::GYRO, walk::rows_of(&(self.start.gyro - nominal.gyro))),
+            (state::ACCEL, walk::rows_of(&(self.start.accel - nominal.accel))),
+            (state::GYRO_BIAS, (self.start.gyro_bias - nominal.gyro_bias).as_slice().to_vec()),
+            (state::ACCEL_BIAS, (self.start.accel_bias - nominal.accel_bias).as_slice().to_vec()),
+        ];
+        for (first, values) in difference {
+            values.iter().enumerate().for_each(|(offset, value)| state.mean[first + offset] = *value);
+        }
+        if self.triangular {
+            for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+                state.reset(state::ACCEL + 3 * i + j, 1, 0.0);
+            }
+        }
+        state
+    }
+}
+
+/// What a pass works on.
+struct Pass<'a> {
+    samples: &'a [Raw],
+    stretches: &'a [Stretch],
+    trajectory: &'a Trajectory,
+    nominal: &'a Nominal,
+    noise: &'a Noise,
+    force_scale: &'a [f64],
+    prior: &'a Prior,
+    gravity_mps2: f64,
+}
+
+/// A recording with its fitted nominal sensor.
+pub struct Twin {
+    /// As read, less what accepted effects put in.
+    pub samples: Vec<Raw>,
+    /// What happened when.
+    pub stretches: Vec<Stretch>,
+    /// Fitted.
+    pub nominal: Nominal,
+    /// About it.
+    pub trajectory: Trajectory,
+    /// In force.
+    pub noise: Noise,
+    /// m/s².
+    pub gravity_mps2: f64,
+    /// Per segment: how much noisier than in the quiet rests its specific force is.
+    pub force_scale: Vec<f64>,
+    prior: Prior,
+}
+
+impl Twin {
+    /// From a start near the truth, such as the device's estimate.
+    pub fn new(
+        samples: Vec<Raw>,
+        stretches: Vec<Stretch>,
+        start: Nominal,
+        noise: Noise,
+        gravity_mps2: f64,
+        triangular: bool,
+    ) -> Self {
+        let prior = Prior { start, triangular, earth_sigma: EARTH_SIGMA };
+        let trajectory = Trajectory::new(&samples, &stretches, &start, gravity_mps2);
+        let mut twin = Self {
+            samples,
+            stretches,
+            nominal: start,
+            trajectory,
+            noise,
+            gravity_mps2,
+            force_scale: Vec::new(),
+            prior,
+        };
+        twin.force_scale = scatter::force_scales(&twin);
+        twin.fit();
+        twin
+    }
+
+    /// Gauss–Newton from where it stands.
+    pub fn fit(&mut self) {
+        for _ in 0..PASSES {
+            let (_, state) = self.pass(&[]);
+            let step = self.take(&state);
+            self.trajectory = Trajectory::new(&self.samples, &self.stretches, &self.nominal, self.gravity_mps2);
+            if step < 1e-9 {
+                break;
+            }
+        }
+        self.force_scale = scatter::force_scales(self);
+    }
+
+    /// Adds a pass's mean to the nominal; the largest change.
+    fn take(&mut self, state: &State) -> f64 {
+        let before = self.nominal;
+        let matrix = |first: usize| nalgebra::Matrix3::from_fn(|i, j| state.mean[first + 3 * i + j]);
+        self.nominal.gyro += matrix(state::GYRO);
+        self.nominal.accel += matrix(state::ACCEL);
+        self.nominal.gyro_bias += state.vector(state::GYRO_BIAS);
+        self.nominal.accel_bias += state.vector(state::ACCEL_BIAS);
+        (self.nominal.gyro - before.gyro).amax().max((self.nominal.accel - before.accel).amax())
+    }
+
+    /// Rows about the nominal with the responses of all influences, and where the filter ended.
+    pub fn pass(&self, influences: &[Influence]) -> (Rows, State) {
+        let pass = Pass {
+            samples: &self.samples,
+            stretches: &self.stretches,
+            trajectory: &self.trajectory,
+            nominal: &self.nominal,
+            noise: &self.noise,
+            force_scale: &self.force_scale,
+            prior: &self.prior,
+            gravity_mps2: self.gravity_mps2,
+        };
+        walk::Walk::new(&pass, influences).run()
+    }
+
+    /// Rows of the nominal with the responses of all influences.
+    pub fn rows(&self, influences: &[Influence]) -> Rows {
+        self.pass(influences).0
+    }
+
+    /// Stretches at rest on something solid.
+    pub fn solid_rests(&self) -> impl Iterator<Item = &Stretch> {
+        self.stretches.iter().filter(|stretch| matches!(stretch.deed, Deed::Rest { .. }) && !stretch.excluded)
+    }
+}
+
+mod scatter;

@@ -1,0 +1,54 @@
+//! Noise of the nominal model: what scatters fast enough that no physics worth naming can be behind it.
+
+use tumble_core::estimate::noise::Noise as Device;
+use tumble_core::setup::TurnStops;
+
+/// A turn against a fence ends no worse than this unless something is wrong with it, rad (0.3°).
+const FENCE_CAP_RAD: f64 = 0.3 * std::f64::consts::PI / 180.0;
+/// A lever arm that a sensor "in the middle of the box" has, m, and how far a turn's axis is from where other turns have it.
+pub const LEVER_SIGMA_M: f64 = 5e-3;
+/// Likewise.
+pub const PIVOT_SIGMA_M: f64 = 5e-3;
+/// A face of a square box, rad: 1 µm on 5 cm, and contact that repeats as well.
+pub const CONTACT_SIGMA_RAD: f64 = 30e-6;
+
+/// Densities and sigmas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Noise {
+    /// rad²/s.
+    pub rate_density: f64,
+    /// (m/s²)² s.
+    pub force_density: f64,
+    /// (rad/s)²/s.
+    pub bias_walk: f64,
+    /// (m/s²)²/s.
+    pub force_walk: f64,
+    /// Factor on the rate density in motion.
+    pub motion_scale: f64,
+    /// rad.
+    pub stop_sigma_rad: f64,
+    /// rad; none where the box is not known to be square.
+    pub facet_sigma_rad: Option<f64>,
+}
+
+/// Least wander that is taken for granted: 1 mdps and 10 µg in 100 s.
+pub const BIAS_WALK_FLOOR: f64 = 3.046e-12;
+/// Likewise, (m/s²)²/s.
+pub const FORCE_WALK_FLOOR: f64 = 1e-10;
+
+impl Noise {
+    /// White densities and stops as the device's estimator found them; nothing that wanders beyond the floor, because what
+    /// wanders is what the search explains.
+    pub fn new(device: &Device, stops: TurnStops) -> Self {
+        let stop_sigma_rad = f64::from(device.stop_sigma_rad);
+        Self {
+            rate_density: f64::from(device.rate_density),
+            force_density: f64::from(device.force_density),
+            bias_walk: BIAS_WALK_FLOOR,
+            force_walk: FORCE_WALK_FLOOR,
+            motion_scale: 1.0,
+            stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
+            facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
+        }
+    }
+}
