@@ -6,7 +6,9 @@
 
 pub mod calibrate;
 pub mod cli;
+pub mod conceal;
 pub mod export;
+pub mod inject;
 pub mod output;
 pub mod recording;
 pub mod reference;

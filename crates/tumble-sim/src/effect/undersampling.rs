@@ -14,7 +14,7 @@ pub(super) static KIND: Kind = Kind {
     unit: "Hz",
     default: 20.0,
     values: Values::Range(1.0, 1000.0),
-    draws: (10.0, 25.0),
+    draws: (16.0, 25.0),
     source: "41 Hz of bandwidth (MPU-9250, CONFIG = 3) asks for more than 82 Hz",
     injects: true,
     make: |draw| {

@@ -134,6 +134,8 @@ pub struct SchemeConfig {
     pub clock: Clock,
     /// Physics that the nominal world leaves out.
     pub effects: Vec<Effect>,
+    /// The recorder keeps the mean of every so many samples: a lower rate with the low-pass that belongs to it. 1 keeps all.
+    pub averaged: usize,
 }
 
 impl SchemeConfig {
@@ -147,6 +149,7 @@ impl SchemeConfig {
             turns: if scheme == Scheme::Single { TurnOrder::Paper } else { TurnOrder::SameFromAbove },
             clock: Clock { rate_error: 0.0, stamps: Stamps::True },
             effects: Vec::new(),
+            averaged: 1,
         }
     }
 

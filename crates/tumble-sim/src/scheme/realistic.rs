@@ -1,6 +1,6 @@
 //! What every real recording has: the nuisances that a diagnosis must not report.
 
-use super::{Scheme, SchemeConfig};
+use super::{Clock, Scheme, SchemeConfig, Stamps};
 use crate::effect::Swing;
 use crate::rng::{Purpose, Rng};
 use crate::sensor::{BiasDrift, Quantisation, Thermal};
@@ -17,7 +17,7 @@ const THERMAL_SHARE: f64 = 0.01;
 impl SchemeConfig {
     /// A clean recording as it is really made. To the nominal world it adds, drawn from the seed: a table tilted by 0 to 3° to
     /// any side, a spin axis that wobbles by 0.1 to 0.5°, 1/f noise of both biases (10 °/h and 40 µg), a die that warms up by 0.2 to
-    /// 0.8 °C with a hundredth of the sheet's coefficients, and counts of ±2000 °/s and ±16 g. Tremor, speeds, stops within
+    /// 0.8 °C with a hundredth of the sheet's coefficients, an oscillator off by up to 0.5 % under true stamps, and counts of ±2000 °/s and ±16 g. Tremor, speeds, stops within
     /// 0.1° of the fence, knocks and scatter of put-downs are the nominal world's already.
     ///
     /// Clean means that no effect of the catalogue is there beyond this.
@@ -49,6 +49,7 @@ impl SchemeConfig {
         };
         sensor.thermal.warm_up_degc = rng.uniform(0.2, 0.8);
         sensor.quantisation = Some(Quantisation { gyro_range_dps: 2000.0, accel_range_g: 16.0 });
+        self.clock = Clock { rate_error: rng.symmetric(0.005), stamps: Stamps::True };
     }
 
     /// Lets the temperature move by 3 to 8 °C, as it does where an effect of temperature is to be seen, while nothing depends
