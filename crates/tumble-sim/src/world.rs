@@ -2,7 +2,7 @@
 
 use crate::effect::{Chain, Instant};
 use crate::error::SimError;
-use crate::motion::{Motion, MotionConfig};
+use crate::motion::{Kinematics, Motion, MotionConfig};
 use crate::sensor::{Sample, Sensor, SensorConfig, Truth};
 use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -97,7 +97,7 @@ impl World {
     fn sample_with_effects(&mut self, t_s: f64) -> Sample {
         let delay = self.sensor.config().delay;
         let at_gyro = self.instant(t_s - delay.gyro_s);
-        let at_accel = self.instant(t_s - delay.accel_s);
+        let at_accel = if delay.accel_s == delay.gyro_s { at_gyro } else { self.instant(t_s - delay.accel_s) };
         let ideal = Ideal {
             angular_rate_rad_s: self.effects.ideal(&at_gyro).angular_rate_rad_s,
             specific_force_mps2: self.effects.ideal(&at_accel).specific_force_mps2,
@@ -108,19 +108,22 @@ impl World {
     }
 
     fn instant(&self, t_s: f64) -> Instant {
-        let spin = self.motion.at(t_s).spin;
+        let kinematics = self.motion.at(t_s);
         Instant {
             t_s,
-            ideal: self.ideal(t_s),
-            angular_acceleration_rad_s2: spin.accel,
+            ideal: self.ideal_of(&kinematics),
+            angular_acceleration_rad_s2: kinematics.spin.accel,
             temperature_degc: self.sensor.config().thermal.at(t_s),
-            rotation_n_from_b: spin.rotation,
+            rotation_n_from_b: kinematics.spin.rotation,
         }
     }
 
     /// What a perfect sensor would say: `ω = ω_nb + R_b_from_n·ω_ie` and `f = R_b_from_n·(a + 2 ω_ie × v + g·up)`.
     pub fn ideal(&self, t_s: f64) -> Ideal {
-        let kinematics = self.motion.at(t_s);
+        self.ideal_of(&self.motion.at(t_s))
+    }
+
+    fn ideal_of(&self, kinematics: &Kinematics) -> Ideal {
         let rotation = kinematics.spin.rotation;
         let earth = self.earth_rate_n();
         let point = kinematics.point(&self.motion.config().shape.lever_b_m);
