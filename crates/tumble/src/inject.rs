@@ -1,7 +1,8 @@
 //! Effects added to a recording of a real sensor.
 //!
-//! Metadata stay as they are, but for the rate if the effect changes it. Readings that no effect touches keep their digits; the
-//! others get as many decimals as their column has, and are rounded to counts where the recording states its ranges.
+//! Metadata stay as they are, but for the rate if the effect changes it. Readings that no effect touches keep their
+//! digits; the others get as many decimals as their column has, and are rounded to counts where the recording states
+//! its ranges.
 
 use nalgebra::Vector3;
 use tumble_sim::effect::{EffectError, EffectTruth, inject};

@@ -1,7 +1,7 @@
 //! The accelerometer's bias walks.
 //!
-//! `db = q·dW` on each axis, from 0 at the first sample, so that its sigma after `t` is `q·√t`. Of consumer parts 0.005 to 0.05 mg/√s is
-//! measured.
+//! `db = q·dW` on each axis, from 0 at the first sample, so that its sigma after `t` is `q·√t`. Of consumer parts 0.005
+//! to 0.05 mg/√s is measured.
 //!
 //! Magnitude: `q` of every axis, mg/√s.
 

@@ -1,6 +1,7 @@
 //! The accelerometer's bias jumps once.
 //!
-//! `b(t) = b + s·[t ≥ t₀]`, `t₀` within 20 to 80 % of the recording. A knock that shifts the proof mass, or stress of the board: 0.5 to 20 mg.
+//! `b(t) = b + s·[t ≥ t₀]`, `t₀` within 20 to 80 % of the recording. A knock that shifts the proof mass, or stress of
+//! the board: 0.5 to 20 mg.
 //!
 //! Magnitude: the length of `s`, mg; its direction and `t₀` are drawn.
 

@@ -2,8 +2,8 @@
 //!
 //! `b(T) = b + β·(T − T₀)`, `β` in mg/°C. The sheet has ±1.5 mg/°C.
 //!
-//! Magnitude: the largest of the three axes' slopes; the others have 30 to 100 % of it, every one with its own sign. The effect brings a
-//! temperature that moves by 3 to 8 °C, evenly or as a warm-up, unless the recording has one.
+//! Magnitude: the largest of the three axes' slopes; the others have 30 to 100 % of it, every one with its own sign.
+//! The effect brings a temperature that moves by 3 to 8 °C, evenly or as a warm-up, unless the recording has one.
 
 use super::prelude::*;
 use super::thermal::{Follows, Slope};

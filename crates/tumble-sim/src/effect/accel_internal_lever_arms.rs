@@ -1,7 +1,8 @@
 //! The accelerometer's three axes feel at three points.
 //!
-//! `f_i = … + [ω̇ × d_i + ω × (ω × d_i)]_i` with `d_i` from the sensor's nominal place to where its axis `i` feels. Within one die 0.1 to 2 mm;
-//! boards that carry single-axis parts have 5 to 20 mm (the "size effect" of inertial units).
+//! `f_i = … + [ω̇ × d_i + ω × (ω × d_i)]_i` with `d_i` from the sensor's nominal place to where its axis `i` feels.
+//! Within one die 0.1 to 2 mm; boards that carry single-axis parts have 5 to 20 mm (the "size effect" of inertial
+//! units).
 //!
 //! Magnitude: the length of the longest `d_i`, mm; the others have 30 to 100 % of it, every one with its own direction.
 

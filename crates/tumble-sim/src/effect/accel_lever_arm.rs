@@ -1,6 +1,7 @@
 //! The sensor sits far from the spin axis.
 //!
-//! `f = R_b_from_n·(a + g·up) + ω̇ × r + ω × (ω × r)`: 10 cm at 42 °/s are 5.5 mg towards the axis. The nominal world has (3, 2, 1) cm.
+//! `f = R_b_from_n·(a + g·up) + ω̇ × r + ω × (ω × r)`: 10 cm at 42 °/s are 5.5 mg towards the axis. The nominal world
+//! has (3, 2, 1) cm.
 //!
 //! Magnitude: the length of `r`, cm, in place of the nominal one; its direction is drawn.
 

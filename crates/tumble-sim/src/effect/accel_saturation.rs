@@ -1,7 +1,7 @@
 //! The accelerometer clips below the end of its stated range.
 //!
-//! `f_out,i = clamp(f_raw,i, ±L)`, a hard clip of every sample after noise. A ±2 g chip clips when the box is put down hard; with an
-//! offset and a scale error a level near 1 g cuts into the stills themselves.
+//! `f_out,i = clamp(f_raw,i, ±L)`, a hard clip of every sample after noise. A ±2 g chip clips when the box is put down
+//! hard; with an offset and a scale error a level near 1 g cuts into the stills themselves.
 //!
 //! Magnitude: the level `L`, g. A *lower* one is the larger effect.
 

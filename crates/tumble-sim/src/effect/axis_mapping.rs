@@ -1,10 +1,11 @@
 //! Axes are not what their names say.
 //!
-//! Two columns of one triad are exchanged, or one has the wrong sign: `raw ↦ P·raw` of everything, bias and noise included. Usual where accelerometer and gyro
-//! come from different drivers or a board's print is wrong. Either makes a left-handed triad.
+//! Two columns of one triad are exchanged, or one has the wrong sign: `raw ↦ P·raw` of everything, bias and noise
+//! included. Usual where accelerometer and gyro come from different drivers or a board's print is wrong. Either makes a
+//! left-handed triad.
 //!
-//! Magnitude: the variant: 1 two gyro axes exchanged, 2 one gyro axis reversed, 3 two accelerometer axes exchanged, 4 one
-//! accelerometer axis reversed. Which axes is drawn.
+//! Magnitude: the variant: 1 two gyro axes exchanged, 2 one gyro axis reversed, 3 two accelerometer axes exchanged, 4
+//! one accelerometer axis reversed. Which axes is drawn.
 
 use super::prelude::*;
 

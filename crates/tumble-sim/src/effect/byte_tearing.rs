@@ -1,8 +1,9 @@
 //! High and low byte of a reading come from two samples.
 //!
-//! `c_out = 256·⌊c_{k−1}/256⌋ + c_k mod 256` where the high bytes of two neighbours differ, else unchanged: a spike of whole multiples of 256
-//! counts against one of the two samples (15.6 °/s or 0.125 g at the widest ranges). Without the chip's shadow registers, that is without a burst read, a few per cent of the
-//! crossings are torn. Half of the time the low byte is the old one. The other channels of the sample are whole.
+//! `c_out = 256·⌊c_{k−1}/256⌋ + c_k mod 256` where the high bytes of two neighbours differ, else unchanged: a spike of
+//! whole multiples of 256 counts against one of the two samples (15.6 °/s or 0.125 g at the widest ranges). Without the
+//! chip's shadow registers, that is without a burst read, a few per cent of the crossings are torn. Half of the time
+//! the low byte is the old one. The other channels of the sample are whole.
 //!
 //! Magnitude: the share of such crossings that is torn, %.
 

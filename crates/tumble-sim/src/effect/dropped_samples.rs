@@ -1,7 +1,7 @@
 //! Samples are missing.
 //!
-//! Gaps begin at random and are 1 to 5 samples long (geometric, 2 on average); their stamps are missing too. A serial line that overruns or a
-//! Bluetooth link loses 0.1 to 5 %.
+//! Gaps begin at random and are 1 to 5 samples long (geometric, 2 on average); their stamps are missing too. A serial
+//! line that overruns or a Bluetooth link loses 0.1 to 5 %.
 //!
 //! Magnitude: the share of all samples that is lost, %.
 

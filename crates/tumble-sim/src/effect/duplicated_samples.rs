@@ -1,7 +1,8 @@
 //! A sample is read twice and the next one never.
 //!
-//! A stale read: new stamp, old values of all channels. A reader that is not locked to the chip's data-ready line repeats the share by which it
-//! is faster, 0.5 to 2 % (the oscillator's tolerance), or more where reading collides with the update.
+//! A stale read: new stamp, old values of all channels. A reader that is not locked to the chip's data-ready line
+//! repeats the share by which it is faster, 0.5 to 2 % (the oscillator's tolerance), or more where reading collides
+//! with the update.
 //!
 //! Magnitude: the share of all samples that repeat the one before, %.
 

@@ -1,7 +1,8 @@
 //! The Earth turns.
 //!
-//! `ω = ω_nb + m·R_b_from_n·ω_ie`, and twice `m·ω_ie` × velocity in the specific force; `ω_ie` is 15.04 °/h (WGS 84), 4.18 mdps. The nominal world has it
-//! (`m = 1`), as every real recording does: 0 leaves it out, more than 1 makes it large enough to be found in one recording.
+//! `ω = ω_nb + m·R_b_from_n·ω_ie`, and twice `m·ω_ie` × velocity in the specific force; `ω_ie` is 15.04 °/h (WGS 84),
+//! 4.18 mdps. The nominal world has it (`m = 1`), as every real recording does: 0 leaves it out, more than 1 makes it
+//! large enough to be found in one recording.
 //!
 //! Magnitude: the factor `m`.
 

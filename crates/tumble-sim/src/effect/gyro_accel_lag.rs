@@ -1,7 +1,7 @@
 //! The accelerometer reports later than the gyro.
 //!
-//! `f_raw(t) = f(t − τ)`, with the gyro on time. The register map gives the accelerometer's filter 4.88 ms in one place and 11.8 ms in another,
-//! the gyro's 5.9 ms; two chips on two buses lag by up to 20 ms.
+//! `f_raw(t) = f(t − τ)`, with the gyro on time. The register map gives the accelerometer's filter 4.88 ms in one place
+//! and 11.8 ms in another, the gyro's 5.9 ms; two chips on two buses lag by up to 20 ms.
 //!
 //! Magnitude: `τ`, ms. A real recording's accelerometer is shifted by straight lines between its samples.
 

@@ -1,7 +1,7 @@
 //! The gyro's bias walks.
 //!
-//! `db = q·dW` on each axis, from 0 at the first sample, so that its sigma after `t` is `q·√t`. IEEE Std 952 calls it rate random walk; of
-//! consumer parts 1e-4 to 1e-3 (°/s)/√s is measured.
+//! `db = q·dW` on each axis, from 0 at the first sample, so that its sigma after `t` is `q·√t`. IEEE Std 952 calls it
+//! rate random walk; of consumer parts 1e-4 to 1e-3 (°/s)/√s is measured.
 //!
 //! Magnitude: `q` of every axis, (°/s)/√s.
 

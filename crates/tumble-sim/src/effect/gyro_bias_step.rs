@@ -1,7 +1,7 @@
 //! The gyro's bias jumps once.
 //!
-//! `b(t) = b + s·[t ≥ t₀]`, `t₀` within 20 to 80 % of the recording. Mechanical stress that gives way, a charge that moves, a driver
-//! that re-zeroes: 0.01 to 1 °/s are seen.
+//! `b(t) = b + s·[t ≥ t₀]`, `t₀` within 20 to 80 % of the recording. Mechanical stress that gives way, a charge that
+//! moves, a driver that re-zeroes: 0.01 to 1 °/s are seen.
 //!
 //! Magnitude: the length of `s`, °/s; its direction and `t₀` are drawn.
 

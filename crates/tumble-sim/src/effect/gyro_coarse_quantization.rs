@@ -1,7 +1,7 @@
 //! The gyro's least step is larger than its noise.
 //!
-//! `ω_out,i = q·round(ω_raw,i/q)`. The chip's own step at ±2000 °/s is 0.061 °/s, as large as its noise; a driver that keeps 8 or 12
-//! bits, or a log with one decimal, has 0.1 to 16 °/s.
+//! `ω_out,i = q·round(ω_raw,i/q)`. The chip's own step at ±2000 °/s is 0.061 °/s, as large as its noise; a driver that
+//! keeps 8 or 12 bits, or a log with one decimal, has 0.1 to 16 °/s.
 //!
 //! Magnitude: the step `q`, °/s.
 

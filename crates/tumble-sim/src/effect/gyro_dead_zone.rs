@@ -1,8 +1,9 @@
 //! Slow turns are not seen.
 //!
-//! The standard soft dead zone, without a jump: `ω ↦ 0` for `|ω_i| < d`, else `ω_i − d·sign ω_i`. It acts on the true rate, before the
-//! bias and the noise are added: an element that sticks. Full turns then lose `d·T`: 1° at 0.1 °/s in 10 s. IEEE Std 528 has the term;
-//! ring lasers lock in at 0.03 to 0.3 °/s, drivers that "zero" small rates use 0.05 to 1.
+//! The standard soft dead zone, without a jump: `ω ↦ 0` for `|ω_i| < d`, else `ω_i − d·sign ω_i`. It acts on the true
+//! rate, before the bias and the noise are added: an element that sticks. Full turns then lose `d·T`: 1° at 0.1 °/s in
+//! 10 s. IEEE Std 528 has the term; ring lasers lock in at 0.03 to 0.3 °/s, drivers that "zero" small rates use 0.05 to
+//! 1.
 //!
 //! Magnitude: the half width `d` of all three axes, °/s.
 

@@ -1,7 +1,7 @@
 //! A specific force moves the gyro's zero.
 //!
-//! `ω_raw = D·ω + b + G·f`, `G` a full 3×3 matrix in (°/s)/g. Unequal proof masses make it so. The MPU-9250's sheet does not state
-//! it; its sibling MPU-6050 has 0.1 °/s/g typical, industrial parts 0.01.
+//! `ω_raw = D·ω + b + G·f`, `G` a full 3×3 matrix in (°/s)/g. Unequal proof masses make it so. The MPU-9250's sheet
+//! does not state it; its sibling MPU-6050 has 0.1 °/s/g typical, industrial parts 0.01.
 //!
 //! Magnitude: the Frobenius norm of `G`, (°/s)/g; its direction among the nine is drawn.
 

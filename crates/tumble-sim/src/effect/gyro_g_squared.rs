@@ -1,7 +1,7 @@
 //! The gyro's zero moves with the square of the specific force.
 //!
-//! `ω_raw,i = … + c_i·f_i²`, `c` in (°/s)/g²: vibration rectification. Industrial MEMS gyros state 0.0001 to 0.01 (°/s)/g²,
-//! tuning forks up to 0.1; consumer sheets are silent.
+//! `ω_raw,i = … + c_i·f_i²`, `c` in (°/s)/g²: vibration rectification. Industrial MEMS gyros state 0.0001 to 0.01
+//! (°/s)/g², tuning forks up to 0.1; consumer sheets are silent.
 //!
 //! Magnitude: the largest `|c_i|`; the other axes have 30 to 100 % of it, every one with its own sign.
 

@@ -1,7 +1,7 @@
 //! The gyro clips below the end of its stated range.
 //!
-//! `ω_out,i = clamp(ω_raw,i, ±L)`, a hard clip of every sample after noise. A chip set to ±250 °/s clips there; hands that turn a box
-//! over reach 70 to 150 °/s, a full turn in 10 s some 45.
+//! `ω_out,i = clamp(ω_raw,i, ±L)`, a hard clip of every sample after noise. A chip set to ±250 °/s clips there; hands
+//! that turn a box over reach 70 to 150 °/s, a full turn in 10 s some 45.
 //!
 //! Magnitude: the level `L`, °/s. A *lower* one is the larger effect.
 

@@ -1,7 +1,7 @@
 //! Clockwise and anticlockwise have different scales.
 //!
-//! `ω_raw,i = … + ½·s_i·|ω_i|`: the scale of positive rates is `s_i` above that of negative ones, and their mean is unchanged. Sheets of
-//! rate gyros that state it allow 100 to 1000 ppm (IEEE Std 528 names it input-output asymmetry).
+//! `ω_raw,i = … + ½·s_i·|ω_i|`: the scale of positive rates is `s_i` above that of negative ones, and their mean is
+//! unchanged. Sheets of rate gyros that state it allow 100 to 1000 ppm (IEEE Std 528 names it input-output asymmetry).
 //!
 //! Magnitude: the largest `|s_i|`, ppm.
 

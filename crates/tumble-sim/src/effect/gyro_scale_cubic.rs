@@ -1,7 +1,7 @@
 //! The gyro's output bends: an odd term.
 //!
-//! `ω_raw,i = … + k_i·ω_i³`: the scale differs by `k_i·ω_i²`, the same for both ways round, so that only different speeds tell it. The
-//! MPU-9250's sheet allows 0.1 % of full scale: at ±250 °/s that is 160 ppm at 100 °/s.
+//! `ω_raw,i = … + k_i·ω_i³`: the scale differs by `k_i·ω_i²`, the same for both ways round, so that only different
+//! speeds tell it. The MPU-9250's sheet allows 0.1 % of full scale: at ±250 °/s that is 160 ppm at 100 °/s.
 //!
 //! Magnitude: the largest change of scale at 100 °/s, ppm.
 

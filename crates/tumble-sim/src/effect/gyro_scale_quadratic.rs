@@ -1,7 +1,8 @@
 //! The gyro's output bends: an even term.
 //!
-//! `ω_raw,i = … + k_i·ω_i²`: the scale differs by `k_i·ω_i`, which has opposite signs for the two ways round. The MPU-9250's sheet
-//! allows 0.1 % of full scale of non-linearity: at ±2000 °/s, 2 °/s or 0.5 ppm/(°/s) if all of it is even; 4 ppm at ±250.
+//! `ω_raw,i = … + k_i·ω_i²`: the scale differs by `k_i·ω_i`, which has opposite signs for the two ways round. The
+//! MPU-9250's sheet allows 0.1 % of full scale of non-linearity: at ±2000 °/s, 2 °/s or 0.5 ppm/(°/s) if all of it is
+//! even; 4 ppm at ±250.
 //!
 //! Magnitude: the largest `|k_i|` in ppm of the rate for every °/s.
 

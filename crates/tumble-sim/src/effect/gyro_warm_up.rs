@@ -1,7 +1,8 @@
 //! The gyro's bias settles after switch-on.
 //!
-//! `b(t) = b + w·e^(−t/τ)` with `t` from the first sample and `τ` of 20 to 100 s. It goes with time and not with the temperature that the chip
-//! reports: the drive loop and the package's stress settle. 0.05 to 0.5 °/s in the first minutes are usual.
+//! `b(t) = b + w·e^(−t/τ)` with `t` from the first sample and `τ` of 20 to 100 s. It goes with time and not with the
+//! temperature that the chip reports: the drive loop and the package's stress settle. 0.05 to 0.5 °/s in the first
+//! minutes are usual.
 //!
 //! Magnitude: the length of `w`, °/s.
 

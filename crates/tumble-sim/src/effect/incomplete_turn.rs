@@ -1,7 +1,7 @@
 //! Turns stop short of 360° although they are said to end against a stop.
 //!
-//! A turn goes by `±(360° − δ)`, and the next begins there. All turns do if the stop is displaced, or one if it was missed once: which is drawn. A book as
-//! a fence gives way by 1 to 5°.
+//! A turn goes by `±(360° − δ)`, and the next begins there. All turns do if the stop is displaced, or one if it was
+//! missed once: which is drawn. A book as a fence gives way by 1 to 5°.
 //!
 //! Magnitude: `δ`, degrees.
 

@@ -1,8 +1,8 @@
 //! Effects added to a recording of a real sensor.
 //!
-//! The real reading stands for the ideal one. Of the gyro's reading, the median of each axis is taken off first: a session
-//! rests half of its time and turns as much one way as the other, so that the median is the bias to within some noise, and a dead
-//! zone or an asymmetry lies about rest and not about the bias.
+//! The real reading stands for the ideal one. Of the gyro's reading, the median of each axis is taken off first: a
+//! session rests half of its time and turns as much one way as the other, so that the median is the bias to within some
+//! noise, and a dead zone or an asymmetry lies about rest and not about the bias.
 
 use super::kind::{Scene, WIDEST};
 use super::model::{Chain, EffectTruth, Instant, Signal};

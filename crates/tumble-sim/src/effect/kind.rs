@@ -85,8 +85,9 @@ pub struct Kind {
     pub default: f64,
     /// What is accepted.
     pub values: Values,
-    /// What a blind trial draws from, evenly in the logarithm: about 3 to 10 times what is just visible in a recording of
-    /// six faces in 200 s. For an effect that grows as its number falls (a clipping level) the visible end is the lower.
+    /// What a blind trial draws from, evenly in the logarithm: about 3 to 10 times what is just visible in a recording
+    /// of six faces in 200 s. For an effect that grows as its number falls (a clipping level) the visible end is the
+    /// lower.
     pub draws: (f64, f64),
     /// Where the typical size comes from.
     pub source: &'static str,

@@ -1,8 +1,9 @@
 //! Physics that a nominal recording leaves out: one file an effect, each a full non-linear forward model.
 //!
-//! An [`Effect`] is an id and one magnitude; axes, directions, signs and times are drawn from the recording's seed, so that a
-//! magnitude means the same thing for every seed. Ids that begin with `x_` lie outside the catalogue that a diagnosis knows: they
-//! are there to find out whether it says so. Several effects go together, and each draws from a stream of its own.
+//! An [`Effect`] is an id and one magnitude; axes, directions, signs and times are drawn from the recording's seed, so
+//! that a magnitude means the same thing for every seed. Ids that begin with `x_` lie outside the catalogue that a
+//! diagnosis knows: they are there to find out whether it says so. Several effects go together, and each draws from a
+//! stream of its own.
 //!
 //! ```
 //! use tumble_sim::{Scheme, SchemeConfig, effect::Effect};

@@ -35,10 +35,10 @@ pub struct Signal {
 
 /// A full non-linear forward model of one effect. Every stage does nothing unless the effect lives there.
 ///
-/// In order: `prepare` (before anything is made), `before` and `after` the moves are queued, then for every sample `ideal` (what is
-/// there to be measured), `analog` (added to the linear model, before noise), `converter` (after noise, before
-/// rounding), and at the end `stream` (all samples with their stamps). A real recording takes `adopt` instead of the first
-/// three and `shift` for what is a matter of time.
+/// In order: `prepare` (before anything is made), `before` and `after` the moves are queued, then for every sample
+/// `ideal` (what is there to be measured), `analog` (added to the linear model, before noise), `converter` (after
+/// noise, before rounding), and at the end `stream` (all samples with their stamps). A real recording takes `adopt`
+/// instead of the first three and `shift` for what is a matter of time.
 pub(crate) trait Model: Boxed + Debug + Send + Sync {
     /// All numbers that were drawn or came out.
     fn parameters(&self) -> Vec<Parameter>;

@@ -1,7 +1,7 @@
 //! The table's tilt changes for good.
 //!
-//! `R_n_from_p ↦ R(h, δ)·R_n_from_p` about a level axis `h`, within half a second, between two moves in the middle of the recording: a leg slips, somebody
-//! leans on it, a book under the plate gives way. 0.05 to 1° are usual.
+//! `R_n_from_p ↦ R(h, δ)·R_n_from_p` about a level axis `h`, within half a second, between two moves in the middle of
+//! the recording: a leg slips, somebody leans on it, a book under the plate gives way. 0.05 to 1° are usual.
 //!
 //! Magnitude: `δ`, degrees.
 

@@ -1,7 +1,8 @@
 //! One knock.
 //!
-//! `f += A·u·sin(π·(t − t₀)/T)` for `t₀ ≤ t ≤ t₀ + T`, a half sine of 5 to 20 ms (the form of IEC 60068-2-27), and with it a full sine of rate, 15 °/s for every g,
-//! that leaves the box as it stood. A finger's tap has 0.2 to 2 g, a dropped tool 5 g. It comes in the middle of a rest or of a turn.
+//! `f += A·u·sin(π·(t − t₀)/T)` for `t₀ ≤ t ≤ t₀ + T`, a half sine of 5 to 20 ms (the form of IEC 60068-2-27), and with
+//! it a full sine of rate, 15 °/s for every g, that leaves the box as it stood. A finger's tap has 0.2 to 2 g, a
+//! dropped tool 5 g. It comes in the middle of a rest or of a turn.
 //!
 //! Magnitude: the peak `A`, g.
 

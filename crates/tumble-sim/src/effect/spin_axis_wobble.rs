@@ -1,7 +1,7 @@
 //! The spin axis of a turn wobbles.
 //!
-//! The box leans by `w` about two axes in the plate, once and (a third of it) twice a turn, faded in and out at the turn's ends. A box turned by hand
-//! on a table does so by 0.1 to 2°: a crumb under it, a hand that pulls upwards.
+//! The box leans by `w` about two axes in the plate, once and (a third of it) twice a turn, faded in and out at the
+//! turn's ends. A box turned by hand on a table does so by 0.1 to 2°: a crumb under it, a hand that pulls upwards.
 //!
 //! Magnitude: the amplitude `w`, degrees.
 

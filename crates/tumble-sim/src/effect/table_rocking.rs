@@ -1,7 +1,8 @@
 //! The table rocks all the time.
 //!
-//! `R_n_from_p ↦ R(h, A·sin(2πft + φ))·R_n_from_p` about a level axis `h` 0.7 m below the plate, `f` of 0.3 to 2 Hz: gravity's direction, the rate and the
-//! horizontal acceleration of the plate all follow. A boat, a floor that people walk on, a table on a carpet: 0.001 to 0.1°.
+//! `R_n_from_p ↦ R(h, A·sin(2πft + φ))·R_n_from_p` about a level axis `h` 0.7 m below the plate, `f` of 0.3 to 2 Hz:
+//! gravity's direction, the rate and the horizontal acceleration of the plate all follow. A boat, a floor that people
+//! walk on, a table on a carpet: 0.001 to 0.1°.
 //!
 //! Magnitude: the amplitude `A`, degrees.
 

@@ -1,7 +1,8 @@
 //! The stamps scatter, the samples do not.
 //!
-//! `t_out,k = t_k + n_k`, `n` white and normal; the sample was taken on time. A host that stamps what arrives by USB or Bluetooth has 0.2 to 10 ms. Stamps
-//! stay in order: one that would not is set 10 µs after its predecessor. The first is exact, being where the recorder starts to count.
+//! `t_out,k = t_k + n_k`, `n` white and normal; the sample was taken on time. A host that stamps what arrives by USB or
+//! Bluetooth has 0.2 to 10 ms. Stamps stay in order: one that would not is set 10 µs after its predecessor. The first
+//! is exact, being where the recorder starts to count.
 //!
 //! Magnitude: the sigma of `n`, ms.
 

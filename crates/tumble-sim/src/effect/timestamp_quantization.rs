@@ -1,7 +1,8 @@
 //! The stamps come in coarse steps.
 //!
-//! `t_out = q·⌊t/q⌋` with `t` from the first stamp. Clocks of 1 ms are common, those of 10 ms (a scheduler's tick) and 15.6 ms (an old
-//! Windows) occur. Two samples never bear the same stamp, which no reader takes: the later one is set 10 µs after the other.
+//! `t_out = q·⌊t/q⌋` with `t` from the first stamp. Clocks of 1 ms are common, those of 10 ms (a scheduler's tick) and
+//! 15.6 ms (an old Windows) occur. Two samples never bear the same stamp, which no reader takes: the later one is set
+//! 10 µs after the other.
 //!
 //! Magnitude: the step `q`, ms. One that divides the sample interval exactly changes nothing.
 

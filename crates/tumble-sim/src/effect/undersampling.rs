@@ -1,9 +1,11 @@
 //! Samples are left out on purpose, without a filter before.
 //!
-//! Every `n`-th sample is kept, `n = round(rate/N)`: noise and motion above half of the new rate fold back. The recording says the lower rate and its stamps are true. A
-//! logger that keeps up with 20 Hz of a chip that filters at 41.
+//! Every `n`-th sample is kept, `n = round(rate/N)`: noise and motion above half of the new rate fold back. The
+//! recording says the lower rate and its stamps are true. A logger that keeps up with 20 Hz of a chip that filters at
+//! 41.
 //!
-//! Magnitude: the wanted rate `N`, Hz; what comes out is the nearest whole division. A *lower* one is the larger effect.
+//! Magnitude: the wanted rate `N`, Hz; what comes out is the nearest whole division. A *lower* one is the larger
+//! effect.
 
 use super::prelude::*;
 

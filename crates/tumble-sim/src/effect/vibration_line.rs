@@ -1,7 +1,8 @@
 //! Something hums on the box.
 //!
-//! `f += A·u·sin(2πF t + φ)` and, half of the time, `ω += 0.1 (°/s)/mg·A·v·sin(2πF t + φ′)`, fixed to the box: a fan, a motor, mains hum. `F` is 5 to 45 % of the
-//! sample rate, or (one time in three) above half of it, where the samples show `|F − n·rate|` instead. 1 to 100 mg are usual near motors.
+//! `f += A·u·sin(2πF t + φ)` and, half of the time, `ω += 0.1 (°/s)/mg·A·v·sin(2πF t + φ′)`, fixed to the box: a fan, a
+//! motor, mains hum. `F` is 5 to 45 % of the sample rate, or (one time in three) above half of it, where the samples
+//! show `|F − n·rate|` instead. 1 to 100 mg are usual near motors.
 //!
 //! Magnitude: the peak `A` of the specific force, mg.
 

@@ -1,7 +1,7 @@
 //! The chip is set to another range than the reader believes.
 //!
-//! `raw ↦ k·raw` of one whole triad, bias and noise included; then it is rounded and clipped as stated. `k` is 2 where the chip has half the range. A write that was lost at
-//! start-up, or the wrong sensitivity in a driver.
+//! `raw ↦ k·raw` of one whole triad, bias and noise included; then it is rounded and clipped as stated. `k` is 2 where
+//! the chip has half the range. A write that was lost at start-up, or the wrong sensitivity in a driver.
 //!
 //! Magnitude: `k`. Which triad is drawn.
 

@@ -66,7 +66,8 @@ impl Scheme {
 /// Which way the single turns go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TurnOrder {
-    /// Counter-clockwise on faces 1, 3, 5, clockwise on 2, 4, 6: the same sign in the sensor's frame for both faces of an axis.
+    /// Counter-clockwise on faces 1, 3, 5, clockwise on 2, 4, 6: the same sign in the sensor's frame for both faces of
+    /// an axis.
     Paper,
     /// Counter-clockwise from above on every face: opposite signs in the sensor's frame, which cancels a bias.
     SameFromAbove,
@@ -134,12 +135,14 @@ pub struct SchemeConfig {
     pub clock: Clock,
     /// Physics that the nominal world leaves out.
     pub effects: Vec<Effect>,
-    /// The recorder keeps the mean of every so many samples: a lower rate with the low-pass that belongs to it. 1 keeps all.
+    /// The recorder keeps the mean of every so many samples: a lower rate with the low-pass that belongs to it. 1 keeps
+    /// all.
     pub averaged: usize,
 }
 
 impl SchemeConfig {
-    /// The nominal world: tilt 1.5°, sensor (3, 2, 1) cm off the axis, square box, fence, sheet errors and noise, 200 Hz.
+    /// The nominal world: tilt 1.5°, sensor (3, 2, 1) cm off the axis, square box, fence, sheet errors and noise, 200
+    /// Hz.
     pub fn new(scheme: Scheme, seed: u64) -> Self {
         Self {
             scheme,
@@ -153,8 +156,8 @@ impl SchemeConfig {
         }
     }
 
-    /// The paper's simulation: [`Scheme::Single`] with Table 1's gyro, tilt 1.5°, exact turns by a machine with the sensor on the
-    /// axis. The accelerometer, of which the paper gives no errors, is drawn from the sheet by the seed.
+    /// The paper's simulation: [`Scheme::Single`] with Table 1's gyro, tilt 1.5°, exact turns by a machine with the
+    /// sensor on the axis. The accelerometer, of which the paper gives no errors, is drawn from the sheet by the seed.
     pub fn paper(seed: u64) -> Self {
         let mut config = Self::new(Scheme::Single, seed);
         config.world.sensor.truth = SensorTruth::paper_table_1(config.world.sensor.truth.accel);

@@ -15,10 +15,11 @@ const ACCEL_INSTABILITY_G: f64 = 40e-6;
 const THERMAL_SHARE: f64 = 0.01;
 
 impl SchemeConfig {
-    /// A clean recording as it is really made. To the nominal world it adds, drawn from the seed: a table tilted by 0 to 3° to
-    /// any side, a spin axis that wobbles by 0.1 to 0.5°, 1/f noise of both biases (10 °/h and 40 µg), a die that warms up by 0.2 to
-    /// 0.8 °C with a hundredth of the sheet's coefficients, an oscillator off by up to 0.5 % under true stamps, and counts of ±2000 °/s and ±16 g. Tremor, speeds, stops within
-    /// 0.1° of the fence, knocks and scatter of put-downs are the nominal world's already.
+    /// A clean recording as it is really made. To the nominal world it adds, drawn from the seed: a table tilted by 0
+    /// to 3° to any side, a spin axis that wobbles by 0.1 to 0.5°, 1/f noise of both biases (10 °/h and 40 µg), a die
+    /// that warms up by 0.2 to 0.8 °C with a hundredth of the sheet's coefficients, an oscillator off by up to 0.5 %
+    /// under true stamps, and counts of ±2000 °/s and ±16 g. Tremor, speeds, stops within 0.1° of the fence, knocks and
+    /// scatter of put-downs are the nominal world's already.
     ///
     /// Clean means that no effect of the catalogue is there beyond this.
     pub fn realistic(scheme: Scheme, seed: u64) -> Self {
@@ -52,8 +53,8 @@ impl SchemeConfig {
         self.clock = Clock { rate_error: rng.symmetric(0.005), stamps: Stamps::True };
     }
 
-    /// Lets the temperature move by 3 to 8 °C, as it does where an effect of temperature is to be seen, while nothing depends
-    /// on it: among recordings that have one, a temperature that moves then tells nothing.
+    /// Lets the temperature move by 3 to 8 °C, as it does where an effect of temperature is to be seen, while nothing
+    /// depends on it: among recordings that have one, a temperature that moves then tells nothing.
     pub fn add_temperature_swing(&mut self) {
         let mut rng = Rng::new(self.world.seed ^ 0x7E3B, Purpose::Box);
         let (mut swing, duration_s) = (Swing::of_any_recording(self.scene(), &mut rng), self.duration_s());

@@ -89,7 +89,8 @@ impl SchemeConfig {
     }
 }
 
-/// The mean of the samples within half of `every` of each `every`-th one, under its stamp, rounded as the recorder rounds.
+/// The mean of the samples within half of `every` of each `every`-th one, under its stamp, rounded as the recorder
+/// rounds.
 fn averaged(samples: Vec<Sample>, every: usize, ranges: Option<Quantisation>) -> Vec<Sample> {
     if every <= 1 {
         return samples;

@@ -1,5 +1,5 @@
-//! Every effect has the size that was asked for. The expected values are computed here from the equations, and share no code with the
-//! models.
+//! Every effect has the size that was asked for. The expected values are computed here from the equations, and share no
+//! code with the models.
 
 mod common;
 mod foreign;

@@ -1,7 +1,7 @@
 //! Recordings that hide something, or nothing: a test that the person can put to the diagnosis, and to themselves.
 //!
-//! Every concealed recording is drawn alike: nuisances, a temperature that moves, counts, now and then a low rate. What is hidden
-//! therefore shows by its physics alone. What it was stands in a sealed file beside the recording ([`Seal`]).
+//! Every concealed recording is drawn alike: nuisances, a temperature that moves, counts, now and then a low rate. What
+//! is hidden therefore shows by its physics alone. What it was stands in a sealed file beside the recording ([`Seal`]).
 
 mod seal;
 

@@ -1,8 +1,9 @@
 //! The sealed file beside a recording: unreadable by accident, not by intent.
 //!
-//! Three lines: `tumble-seal 1`, the FNV-1a hash (64 bits, hexadecimal) of the recording's bytes, and the secret as JSON, filled with
-//! spaces to a multiple of 8 KiB so that its length tells nothing, XORed with a keystream (splitmix64 begun with the
-//! hash) and written in hexadecimal. The hash is there to say whether the recording is still the one that was sealed.
+//! Three lines: `tumble-seal 1`, the FNV-1a hash (64 bits, hexadecimal) of the recording's bytes, and the secret as
+//! JSON, filled with spaces to a multiple of 8 KiB so that its length tells nothing, XORed with a keystream (splitmix64
+//! begun with the hash) and written in hexadecimal. The hash is there to say whether the recording is still the one
+//! that was sealed.
 
 use std::path::{Path, PathBuf};
 

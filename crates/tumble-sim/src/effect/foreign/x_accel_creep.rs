@@ -1,6 +1,7 @@
 //! The accelerometer creeps towards its reading after a new face.
 //!
-//! `f_raw,i = … − c_i·(f_i − s_i)`, `τ·ṡ = f − s`, `τ` of 3 to 15 s: a share of every change comes late. Glue under the die.
+//! `f_raw,i = … − c_i·(f_i − s_i)`, `τ·ṡ = f − s`, `τ` of 3 to 15 s: a share of every change comes late. Glue under the
+//! die.
 //!
 //! Magnitude: the largest `|c_i|`, mg for each g of change.
 

@@ -1,6 +1,7 @@
 //! Two forces together move the third axis.
 //!
-//! `f_raw,i = … + k_i·f_j·f_k` (i, j, k all different): a cross-coupling of the springs. Nothing on six exact faces, much in oblique attitudes.
+//! `f_raw,i = … + k_i·f_j·f_k` (i, j, k all different): a cross-coupling of the springs. Nothing on six exact faces,
+//! much in oblique attitudes.
 //!
 //! Magnitude: the largest `|k_i|`, mg/g².
 

@@ -1,7 +1,7 @@
 //! The accelerometer remembers the face before.
 //!
-//! `f_raw,i = … + h_i·m_i`, where `m_i` is the sign that `f_i` had when it last went beyond 0.7 g: with the axis level, the reading depends on which side
-//! was up before. Friction and charge of the electrodes.
+//! `f_raw,i = … + h_i·m_i`, where `m_i` is the sign that `f_i` had when it last went beyond 0.7 g: with the axis level,
+//! the reading depends on which side was up before. Friction and charge of the electrodes.
 //!
 //! Magnitude: the largest `|h_i|`, mg.
 

@@ -1,6 +1,7 @@
 //! Turning moves the accelerometer's zero, whatever the axis of the turn.
 //!
-//! `f_raw = … + a·(|ω|/100 °/s)²`, `a` fixed to the sensor: no lever arm does that, whose part points to the axis. A package that bends.
+//! `f_raw = … + a·(|ω|/100 °/s)²`, `a` fixed to the sensor: no lever arm does that, whose part points to the axis. A
+//! package that bends.
 //!
 //! Magnitude: the length of `a`, mg.
 

@@ -1,7 +1,7 @@
 //! A fast turn leaves a bias that dies away.
 //!
-//! `b_i(t) = a_i·∫|ω_i|/360°·e^(−(t−t′)/τ) dt′`: a full turn about an axis leaves `a_i`, whichever way round, and `τ` of 5 to 30 s forgets it.
-//! Springs of metal and of glued packages do so (anelastic after-effect).
+//! `b_i(t) = a_i·∫|ω_i|/360°·e^(−(t−t′)/τ) dt′`: a full turn about an axis leaves `a_i`, whichever way round, and `τ`
+//! of 5 to 30 s forgets it. Springs of metal and of glued packages do so (anelastic after-effect).
 //!
 //! Magnitude: the largest `|a_i|`, °/s.
 

@@ -1,6 +1,7 @@
 //! The gyro feels angular acceleration about its other axes.
 //!
-//! `ω_raw = … + C·ω̇`, `C` with a zero diagonal (which would be a delay): (°/s)/(°/s²), that is seconds. A proof mass that is not balanced.
+//! `ω_raw = … + C·ω̇`, `C` with a zero diagonal (which would be a delay): (°/s)/(°/s²), that is seconds. A proof mass
+//! that is not balanced.
 //!
 //! Magnitude: the Frobenius norm of `C`, ms.
 

@@ -1,6 +1,7 @@
 //! The gyro's scale depends on the specific force.
 //!
-//! `ω_raw,i = … + k_i·f_i·ω_i`: a load on the springs changes their stiffness, so that the scale is another with the axis up than with it down.
+//! `ω_raw,i = … + k_i·f_i·ω_i`: a load on the springs changes their stiffness, so that the scale is another with the
+//! axis up than with it down.
 //!
 //! Magnitude: the largest `|k_i|`, ppm for each g.
 

@@ -1,6 +1,7 @@
 //! The gyro feels the Earth's magnetic field.
 //!
-//! `ω_raw = … + M·R_b_from_n·m̂`, `m̂` the field's direction: to the north and 65° below level, as in central Europe. A vibrating element with a current in it.
+//! `ω_raw = … + M·R_b_from_n·m̂`, `m̂` the field's direction: to the north and 65° below level, as in central Europe. A
+//! vibrating element with a current in it.
 //!
 //! Magnitude: the Frobenius norm of `M`, °/s.
 

@@ -1,7 +1,7 @@
 //! Two rates together make a third.
 //!
-//! `ω_raw,i = … + k_i·ω_j·ω_k` (i, j, k all different): a proof mass whose principal axes are not those of its frame feels the centrifugal moment. Nothing on a
-//! plain turn about a face, much while the box is turned over.
+//! `ω_raw,i = … + k_i·ω_j·ω_k` (i, j, k all different): a proof mass whose principal axes are not those of its frame
+//! feels the centrifugal moment. Nothing on a plain turn about a face, much while the box is turned over.
 //!
 //! Magnitude: the largest `|k_i|`, °/s at 100 °/s about both other axes.
 

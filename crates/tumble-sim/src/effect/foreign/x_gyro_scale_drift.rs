@@ -1,6 +1,7 @@
 //! The gyro's scale drifts with time.
 //!
-//! `D(t) = (I + diag(s)·(t/T − ½))·D` over the recording's length `T`, while the temperature stands: the drive amplitude settles.
+//! `D(t) = (I + diag(s)·(t/T − ½))·D` over the recording's length `T`, while the temperature stands: the drive
+//! amplitude settles.
 //!
 //! Magnitude: the largest `|s_i|`, ppm from the first to the last sample.
 
