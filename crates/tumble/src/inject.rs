@@ -9,7 +9,7 @@ use tumble_sim::effect::{EffectError, EffectTruth, inject};
 use tumble_sim::sensor::Quantisation;
 use tumble_sim::{Effect, Sample};
 
-use crate::recording::{Recording, Row, STANDARD_GRAVITY_MPS2};
+use crate::recording::{Basis, Inference, Known, Recording, Row, STANDARD_GRAVITY_MPS2};
 
 /// More than that is rounding of the arithmetic.
 const MOST_DECIMALS: usize = 9;
@@ -33,8 +33,12 @@ pub fn add(recording: &mut Recording, effects: &[Effect], seed: u64) -> Result<V
     Ok(truths)
 }
 
+/// Ranges that are stated or that the least step shows. One that is merely large enough for the largest reading says
+/// nothing of the step.
 fn ranges(recording: &Recording) -> Option<Quantisation> {
-    let (gyro, accel) = (recording.metadata.gyro_range_dps?, recording.metadata.accel_range_g?);
+    let inference = Inference::of(recording);
+    let known = |range: Known| (range.basis != Basis::Largest).then_some(range.value);
+    let (gyro, accel) = (known(inference.gyro_range_dps)?, known(inference.accel_range_g)?);
     Some(Quantisation { gyro_range_dps: gyro, accel_range_g: accel })
 }
 

@@ -96,13 +96,13 @@ fn effects_are_added_to_a_real_recording() {
     let folder = tempfile::tempdir().expect("a place to write");
     let (real, out, truth) = (path(&folder, "real.csv"), path(&folder, "out.csv"), path(&folder, "t.json"));
     good(&["simulate", "-o", &real, "--scheme", "quarter", "--nuisance", "--seed", "4"]);
-    // As another logger writes: three and four decimals, its own metadata.
+    // As another logger writes: three and six decimals, its own metadata.
     let written = read(&real);
     let (_, rows) = parts(&written);
-    let mut csv = "# sensor: somebody's\n# turns: by-hand\nt_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g\n".to_owned();
+    let mut csv = "# sensor: somebody's\n# gyro_range_dps: 2000\n# accel_range_g: 16\n# turns: by-hand\nt_s,gx_dps,gy_dps,gz_dps,ax_g,ay_g,az_g\n".to_owned();
     for row in rows {
         let [t, gx, gy, gz, ax, ay, az] = row[..7] else { panic!("seven columns") };
-        csv += &format!("{t:.6},{gx:.3},{gy:.3},{gz:.3},{ax:.4},{ay:.4},{az:.4}\n");
+        csv += &format!("{t:.6},{gx:.3},{gy:.3},{gz:.3},{ax:.6},{ay:.6},{az:.6}\n");
     }
     std::fs::write(&real, &csv).expect("written");
     good(&["simulate", "--inject", &real, "--effect", "accel_bias_step=20", "-o", &out, "--truth", &truth]);
@@ -112,13 +112,22 @@ fn effects_are_added_to_a_real_recording() {
     let step = &json(&read(&truth))["effects"][0]["parameters"];
     let (time_s, size) =
         (step[0]["value"].as_f64().expect("s"), |i: usize| step[i]["value"].as_f64().expect("mg") / 1e3);
+    let mut after = Vec::new();
     for (old, new) in old.iter().zip(&new) {
         assert_eq!(old[..4], new[..4], "stamps and gyro are left alone");
-        for i in 4..7 {
-            let expected = if old[0] >= time_s { size(i - 3) } else { 0.0 };
-            assert!((new[i] - old[i] - expected).abs() < 0.51e-4, "{new:?}");
-            assert!((new[i] * 1e4 - (new[i] * 1e4).round()).abs() < 1e-6, "as many decimals as before");
+        let by: [f64; 3] = std::array::from_fn(|i| new[4 + i] - old[4 + i]);
+        assert!(new[4..7].iter().all(|a| (a * 1e6 - (a * 1e6).round()).abs() < 1e-6), "as many decimals as before");
+        if old[0] < time_s {
+            assert_eq!(by, [0.0; 3]);
+        } else {
+            // Whole counts of 0.49 mg: at most one beside the step.
+            assert!((0..3).all(|i| (by[i] - size(i + 1)).abs() < 0.6e-3), "{by:?}");
+            after.push(by);
         }
+    }
+    for i in 0..3 {
+        let mean = after.iter().map(|by| by[i]).sum::<f64>() / after.len() as f64;
+        assert!((mean - size(i + 1)).abs() < 0.02e-3, "{mean} g: parts of a count are not rounded away");
     }
     let refused = tumble(&["simulate", "--inject", &real, "--effect", "gyro_bias_temperature", "-o", &out]);
     assert_eq!(status(&refused), 1);

@@ -2,7 +2,8 @@
 //!
 //! `f_i = … + [ω̇ × d_i + ω × (ω × d_i)]_i` with `d_i` from the sensor's nominal place to where its axis `i` feels.
 //! Within one die 0.1 to 2 mm; boards that carry single-axis parts have 5 to 20 mm (the "size effect" of inertial
-//! units).
+//! units). What a full turn in 10 s shows of them is small: 0.4 mg for 10 mm, so that a session by hand sees 50 mm at
+//! best. That is the size of a unit built of separate boards, and the default is twice that.
 //!
 //! Magnitude: the length of the longest `d_i`, mm; the others have 30 to 100 % of it, every one with its own direction.
 
@@ -13,9 +14,9 @@ pub(super) static KIND: Kind = Kind {
     name: "accelerometer axes feel at different points",
     meaning: "the longest of the three axes' offsets",
     unit: "mm",
-    default: 10.0,
-    values: Values::Range(0.0, 100.0),
-    draws: (6.0, 30.0),
+    default: 100.0,
+    values: Values::Range(0.0, 500.0),
+    draws: (100.0, 300.0),
     source: "size effect: 0.1 to 2 mm within a die, 5 to 20 mm between single-axis parts",
     injects: false,
     make: |draw| {

@@ -14,7 +14,7 @@ pub(super) static KIND: Kind = Kind {
     unit: "ppm",
     default: 1000.0,
     values: Values::Range(0.0, 100_000.0),
-    draws: (300.0, 1500.0),
+    draws: (700.0, 2500.0),
     source: "100 to 1000 ppm where sheets state it (scale factor asymmetry, IEEE Std 528)",
     injects: true,
     make: |draw| Box::new(Asymmetry { ppm: draw.spread() }),

@@ -6,12 +6,14 @@
 
 use super::kind::{Scene, WIDEST};
 use super::model::{Chain, EffectTruth, Instant, Signal};
-use super::{Effect, EffectError};
+use super::{DPS, Effect, EffectError};
+use crate::STANDARD_GRAVITY_MPS2 as G;
+use crate::rng::{Purpose, Rng};
 use crate::sensor::{Quantisation, Sample};
 use crate::world::Ideal;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Adds effects to samples. Readings are rounded to `ranges` again if there are any.
+/// Adds effects to samples. With `ranges`, readings stay whole counts.
 ///
 /// # Errors
 /// If an effect cannot be added, or needs what the samples have not; they are unchanged then.
@@ -27,44 +29,79 @@ pub fn inject(
     let scene = scene(samples, ranges)?;
     let mut chain = Effect::chain(effects, scene, seed);
     chain.adopt(samples)?;
-    chain.shift(samples);
+    let mut analog = samples.clone();
+    chain.shift(&mut analog);
     let rest = median_rate(samples);
-    for sample in samples.iter_mut() {
-        change(sample, &mut chain, &rest, ranges);
+    let mut rng = Rng::new(seed, Purpose::Noise);
+    for (sample, analog) in samples.iter_mut().zip(&analog) {
+        let below = ranges.map(|ranges| below_a_count(&ranges, &mut rng)).unwrap_or_default();
+        let signal = changed(analog, &below, &mut chain, &rest);
+        settle(
+            &mut sample.angular_rate_rad_s,
+            &signal.angular_rate_rad_s,
+            ranges.map(|r| r.gyro_counts_per_dps() / DPS),
+        );
+        settle(
+            &mut sample.specific_force_mps2,
+            &signal.specific_force_mps2,
+            ranges.map(|r| r.accel_counts_per_g() / G),
+        );
     }
     chain.stream(samples, &scene.ranges);
     Ok(chain.truths())
 }
 
-fn change(sample: &mut Sample, chain: &mut Chain, rest: &Vector3<f64>, ranges: Option<Quantisation>) {
-    let ideal =
-        Ideal { angular_rate_rad_s: sample.angular_rate_rad_s - rest, specific_force_mps2: sample.specific_force_mps2 };
+/// What the sensor's rounding may have taken away: even over one count, as it is where noise is not much below one.
+/// Without it an effect of less than half a count would be rounded away, every time.
+fn below_a_count(ranges: &Quantisation, rng: &mut Rng) -> Below {
+    // Not quite half: what no effect touches must be rounded to what it was.
+    let mut part = |counts_per_unit: f64| Vector3::from_fn(|_, _| rng.symmetric(0.4999) / counts_per_unit);
+    Below { rate: part(ranges.gyro_counts_per_dps() / DPS), force: part(ranges.accel_counts_per_g() / G) }
+}
+
+/// Parts of a count, SI.
+#[derive(Default)]
+struct Below {
+    rate: Vector3<f64>,
+    force: Vector3<f64>,
+}
+
+/// What the sensor would have said before rounding.
+fn changed(analog: &Sample, below: &Below, chain: &mut Chain, rest: &Vector3<f64>) -> Signal {
     let mut at = Instant {
-        t_s: sample.t_s,
-        ideal,
+        t_s: analog.t_s,
+        ideal: Ideal {
+            angular_rate_rad_s: analog.angular_rate_rad_s + below.rate - rest,
+            specific_force_mps2: analog.specific_force_mps2 + below.force,
+        },
         angular_acceleration_rad_s2: Vector3::zeros(),
-        temperature_degc: sample.temperature_degc,
+        temperature_degc: analog.temperature_degc,
         rotation_n_from_b: UnitQuaternion::identity(),
     };
     at.ideal = chain.ideal(&at);
-    let before = Signal {
+    let mut signal = Signal {
         angular_rate_rad_s: at.ideal.angular_rate_rad_s + rest,
         specific_force_mps2: at.ideal.specific_force_mps2,
     };
-    let mut signal = before;
     chain.analog(&at, &mut signal);
     chain.converter(&at, &mut signal);
-    // What the effect leaves alone stays what it was, to the last digit.
-    let unchanged =
-        Signal { angular_rate_rad_s: ideal.angular_rate_rad_s + rest, specific_force_mps2: ideal.specific_force_mps2 };
-    for i in 0..3 {
-        if signal.angular_rate_rad_s[i] != unchanged.angular_rate_rad_s[i] {
-            let rounded = ranges.map_or(signal.angular_rate_rad_s, |r| r.gyro(&signal.angular_rate_rad_s));
-            sample.angular_rate_rad_s[i] = rounded[i];
-        }
-        if signal.specific_force_mps2[i] != unchanged.specific_force_mps2[i] {
-            let rounded = ranges.map_or(signal.specific_force_mps2, |r| r.accel(&signal.specific_force_mps2));
-            sample.specific_force_mps2[i] = rounded[i];
+    signal
+}
+
+/// Moves a reading by the whole counts that come nearest to what it should be. Counting from the old reading keeps it
+/// on the sensor's own grid even if that is not quite the sheet's.
+fn settle(reading: &mut Vector3<f64>, wanted: &Vector3<f64>, counts_per_unit: Option<f64>) {
+    for (old, new) in reading.iter_mut().zip(wanted.iter()) {
+        let by = new - *old;
+        match counts_per_unit {
+            Some(counts) if (by * counts).round() == 0.0 => {}
+            Some(counts) => {
+                let (low, high) = ((-32768.0 / counts).min(*old), (32767.0 / counts).max(*old));
+                *old = (*old + (by * counts).round() / counts).clamp(low, high);
+            }
+            // What the arithmetic alone moved, by parts in 1e16, stays what it was.
+            None if by.abs() <= 1e-14 * (1.0 + old.abs()) => {}
+            None => *old = *new,
         }
     }
 }

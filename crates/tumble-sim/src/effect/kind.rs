@@ -85,9 +85,10 @@ pub struct Kind {
     pub default: f64,
     /// What is accepted.
     pub values: Values,
-    /// What a blind trial draws from, evenly in the logarithm: about 3 to 10 times what is just visible in a recording
-    /// of six faces in 200 s. For an effect that grows as its number falls (a clipping level) the visible end is the
-    /// lower.
+    /// What a blind trial draws from, evenly in the logarithm: about 3 to 10 times what is just visible in 200 s of six
+    /// faces. Of the smaller effects, a linear calibration of `Scheme::Double` leaves a signal-to-noise ratio of 15 to
+    /// 200 (5 is just visible); clipping, lag, wobble, torn bytes and wrong axes have far more. For an effect that grows
+    /// as its number falls (a clipping level, a rate) the visible end is the lower.
     pub draws: (f64, f64),
     /// Where the typical size comes from.
     pub source: &'static str,

@@ -17,7 +17,7 @@ pub(super) static KIND: Kind = Kind {
     unit: "deg",
     default: 0.05,
     values: Values::Range(0.0, 10.0),
-    draws: (0.02, 0.15),
+    draws: (0.01, 0.08),
     source: "0.001 to 0.1 degrees at 0.3 to 2 Hz of tables on soft floors",
     injects: false,
     make: |draw| {

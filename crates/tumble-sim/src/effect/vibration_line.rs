@@ -14,9 +14,9 @@ pub(super) static KIND: Kind = Kind {
     name: "a steady vibration",
     meaning: "the peak of its specific force",
     unit: "mg",
-    default: 20.0,
+    default: 10.0,
     values: Values::Range(0.0, 2000.0),
-    draws: (5.0, 40.0),
+    draws: (1.0, 10.0),
     source: "1 to 100 mg near fans and motors",
     injects: true,
     make: |draw| {

@@ -1,7 +1,7 @@
 //! What every real recording has: the nuisances that a diagnosis must not report.
 
 use super::{Clock, Scheme, SchemeConfig, Stamps};
-use crate::effect::Swing;
+use crate::effect::{Effect, Swing};
 use crate::rng::{Purpose, Rng};
 use crate::sensor::{BiasDrift, Quantisation, Thermal};
 use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
@@ -25,6 +25,15 @@ impl SchemeConfig {
     pub fn realistic(scheme: Scheme, seed: u64) -> Self {
         let mut config = Self::new(scheme, seed);
         config.add_nuisances();
+        config
+    }
+
+    /// A recording for a blind trial: [`SchemeConfig::realistic`] with a temperature that moves, so that nothing but
+    /// its physics shows which effect is in it, or whether one is.
+    pub fn blind(scheme: Scheme, seed: u64, effect: Option<Effect>) -> Self {
+        let mut config = Self::realistic(scheme, seed);
+        config.add_temperature_swing();
+        config.effects.extend(effect);
         config
     }
 

@@ -13,9 +13,9 @@ pub(super) static KIND: Kind = Kind {
     name: "gyro feels angular acceleration about other axes",
     meaning: "the norm of the matrix from angular acceleration to rate",
     unit: "ms",
-    default: 10.0,
+    default: 5.0,
     values: Values::Range(0.0, 500.0),
-    draws: (6.0, 30.0),
+    draws: (2.0, 10.0),
     source: "proof masses out of balance: up to some ms",
     injects: false,
     make: |draw| {

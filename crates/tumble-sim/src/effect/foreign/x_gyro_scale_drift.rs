@@ -12,9 +12,9 @@ pub(super) static KIND: Kind = Kind {
     name: "gyro scale drifts with time",
     meaning: "the largest change of an axis' scale over the recording",
     unit: "ppm",
-    default: 1500.0,
+    default: 2000.0,
     values: Values::Range(0.0, 100000.0),
-    draws: (500.0, 3000.0),
+    draws: (1500.0, 5000.0),
     source: "drive amplitude after switch-on: 100 to 1000 ppm",
     injects: true,
     make: |draw| {
