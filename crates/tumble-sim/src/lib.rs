@@ -2,7 +2,8 @@
 //!
 //! Full non-linear forward physics of one MPU-9250-class sensor inside a box that a person moves over a table: where
 //! the box is ([`motion`]), what the sensor makes of it ([`sensor`]), who decides what happens next ([`person`], which
-//! hears only the serial console and sees only the LED), and fixed schemes for recordings ([`scheme`]).
+//! hears only the serial console and sees only the LED), fixed schemes for recordings ([`scheme`]), and physics that a nominal
+//! recording leaves out ([`effect`]).
 //! Nothing here reads or writes a file, and nothing here is shared with the estimator: a test that compares the
 //! two therefore means something.
 //!
@@ -31,6 +32,7 @@
 #![forbid(unsafe_code)]
 #![warn(missing_docs)]
 
+pub mod effect;
 pub mod error;
 pub mod face;
 pub mod kinematics;
@@ -41,6 +43,7 @@ pub mod scheme;
 pub mod sensor;
 pub mod world;
 
+pub use effect::Effect;
 pub use error::SimError;
 pub use face::Face;
 pub use motion::{Direction, Motion, Primitive};

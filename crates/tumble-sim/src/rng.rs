@@ -22,6 +22,8 @@ pub enum Purpose {
     Scheme = 5,
     /// The box's faces.
     Box = 6,
+    /// What an effect leaves open: axes, directions, signs, times.
+    Effect = 7,
 }
 
 /// A deterministic generator: the same seed and purpose give the same numbers on every machine.

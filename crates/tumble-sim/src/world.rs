@@ -1,7 +1,8 @@
 //! Motion and sensor together: ask it for samples.
 
+use crate::effect::{Chain, Instant};
 use crate::error::SimError;
-use crate::motion::{Motion, MotionConfig};
+use crate::motion::{Kinematics, Motion, MotionConfig};
 use crate::sensor::{Sample, Sensor, SensorConfig, Truth};
 use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -57,6 +58,9 @@ pub struct World {
     gravity_mps2: f64,
     latitude_deg: f64,
     seed: u64,
+    /// 1 but for the effect that says otherwise.
+    pub(crate) earth_rate_share: f64,
+    pub(crate) effects: Chain,
 }
 
 impl World {
@@ -73,20 +77,53 @@ impl World {
             gravity_mps2: config.gravity_mps2,
             latitude_deg: config.latitude_deg,
             seed: config.seed,
+            earth_rate_share: 1.0,
+            effects: Chain::default(),
         })
     }
 
     /// The sensor's sample at `t_s`, with all its errors. Ask at increasing times; each call is one sample of noise.
     pub fn sample(&mut self, t_s: f64) -> Sample {
         let delay = self.sensor.config().delay;
+        if !self.effects.is_empty() {
+            return self.sample_with_effects(t_s);
+        }
         let at_gyro = self.ideal(t_s - delay.gyro_s);
         let at_accel = if delay.accel_s == delay.gyro_s { at_gyro } else { self.ideal(t_s - delay.accel_s) };
         self.sensor.measure(t_s, &at_gyro.angular_rate_rad_s, &at_accel.specific_force_mps2)
     }
 
+    /// The same with what the effects add on the way.
+    fn sample_with_effects(&mut self, t_s: f64) -> Sample {
+        let delay = self.sensor.config().delay;
+        let at_gyro = self.instant(t_s - delay.gyro_s);
+        let at_accel = if delay.accel_s == delay.gyro_s { at_gyro } else { self.instant(t_s - delay.accel_s) };
+        let ideal = Ideal {
+            angular_rate_rad_s: self.effects.ideal(&at_gyro).angular_rate_rad_s,
+            specific_force_mps2: self.effects.ideal(&at_accel).specific_force_mps2,
+        };
+        let temperature_degc = self.sensor.config().thermal.at(t_s);
+        let at = Instant { t_s, ideal, temperature_degc, ..at_gyro };
+        self.sensor.measure_with(&at, &mut self.effects)
+    }
+
+    fn instant(&self, t_s: f64) -> Instant {
+        let kinematics = self.motion.at(t_s);
+        Instant {
+            t_s,
+            ideal: self.ideal_of(&kinematics),
+            angular_acceleration_rad_s2: kinematics.spin.accel,
+            temperature_degc: self.sensor.config().thermal.at(t_s),
+            rotation_n_from_b: kinematics.spin.rotation,
+        }
+    }
+
     /// What a perfect sensor would say: `ω = ω_nb + R_b_from_n·ω_ie` and `f = R_b_from_n·(a + 2 ω_ie × v + g·up)`.
     pub fn ideal(&self, t_s: f64) -> Ideal {
-        let kinematics = self.motion.at(t_s);
+        self.ideal_of(&self.motion.at(t_s))
+    }
+
+    fn ideal_of(&self, kinematics: &Kinematics) -> Ideal {
         let rotation = kinematics.spin.rotation;
         let earth = self.earth_rate_n();
         let point = kinematics.point(&self.motion.config().shape.lever_b_m);
@@ -100,7 +137,7 @@ impl World {
     /// The Earth's rate in `n` (east, north, up), rad/s.
     pub fn earth_rate_n(&self) -> Vector3<f64> {
         let latitude = self.latitude_deg.to_radians();
-        Vector3::new(0.0, latitude.cos(), latitude.sin()) * EARTH_RATE_RAD_S
+        Vector3::new(0.0, latitude.cos(), latitude.sin()) * (EARTH_RATE_RAD_S * self.earth_rate_share)
     }
 
     /// `R_n_from_b` at any time.

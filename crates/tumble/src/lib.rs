@@ -6,8 +6,10 @@
 
 pub mod calibrate;
 pub mod cli;
+pub mod conceal;
 pub mod diagnose;
 pub mod export;
+pub mod inject;
 pub mod output;
 pub mod recording;
 pub mod reference;

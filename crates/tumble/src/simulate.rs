@@ -3,10 +3,11 @@
 use clap::ValueEnum;
 use nalgebra::Vector3;
 use thiserror::Error;
+use tumble_sim::effect::EffectError;
 use tumble_sim::motion::{Hands, Table};
 use tumble_sim::scheme::Imperfection;
 use tumble_sim::sensor::{Noise, Quantisation};
-use tumble_sim::{Scheme, SchemeConfig, SimError, Truth};
+use tumble_sim::{Effect, Scheme, SchemeConfig, SimError, Truth};
 
 use crate::recording::{BoxFaces, Metadata, Recording, Row, STANDARD_GRAVITY_MPS2, TurnStops};
 
@@ -50,6 +51,10 @@ pub struct Plan {
     pub rate_hz: f64,
     /// Leaves out all noise.
     pub noiseless: bool,
+    /// What every real recording has besides.
+    pub nuisance: bool,
+    /// Physics that the nominal world leaves out.
+    pub effects: Vec<Effect>,
 }
 
 /// A recording and, apart from it, the truth.
@@ -72,29 +77,34 @@ pub enum PlanError {
     /// A setting out of its range.
     #[error(transparent)]
     Setting(#[from] SimError),
+    /// An effect that there is not, or not so large.
+    #[error(transparent)]
+    Effect(#[from] EffectError),
 }
 
 impl Plan {
     /// Runs the simulation.
     pub fn make(&self) -> Result<Made, PlanError> {
-        let config = self.config()?;
-        let made = config.record()?;
-        let rows = made.samples.iter().map(row).collect();
-        let recording = Recording { metadata: self.metadata(&config), rows, notices: Vec::new() };
-        Ok(Made { recording, truth: made.truth })
+        Ok(make(&self.config()?)?)
     }
 
-    fn config(&self) -> Result<SchemeConfig, PlanError> {
+    /// What the plan comes to.
+    pub(crate) fn config(&self) -> Result<SchemeConfig, PlanError> {
         let scheme = self.scheme.scheme();
         let mut config = SchemeConfig::new(scheme, self.seed);
         if self.paper {
             config =
                 SchemeConfig { scheme, timing: config.timing, turns: config.turns, ..SchemeConfig::paper(self.seed) };
         }
+        if self.nuisance {
+            config.add_nuisances();
+        }
         self.set_motion(&mut config);
         config.world.sensor.rate_hz = self.rate_hz;
-        config.world.sensor.quantisation =
-            self.ranges.map(|(gyro_range_dps, accel_range_g)| Quantisation { gyro_range_dps, accel_range_g });
+        if let Some((gyro_range_dps, accel_range_g)) = self.ranges {
+            config.world.sensor.quantisation = Some(Quantisation { gyro_range_dps, accel_range_g });
+        }
+        config.effects.clone_from(&self.effects);
         for word in &self.imperfections {
             config = imperfections(word)?.into_iter().fold(config, SchemeConfig::with);
         }
@@ -106,9 +116,10 @@ impl Plan {
 
     fn set_motion(&self, config: &mut SchemeConfig) {
         let motion = &mut config.world.motion;
+        let wobble_deg = motion.hands.wobble_deg;
         match self.by_hand {
-            Some(true) => motion.hands = Hands::by_hand(),
-            Some(false) => motion.hands = Hands::fenced(),
+            Some(true) => motion.hands = Hands { wobble_deg, ..Hands::by_hand() },
+            Some(false) => motion.hands = Hands { wobble_deg, ..Hands::fenced() },
             None => {}
         }
         if let Some(wobble_deg) = self.wobble_deg {
@@ -121,22 +132,29 @@ impl Plan {
             motion.shape.lever_b_m = Vector3::from(lever_cm) / 100.0;
         }
     }
+}
 
-    /// Says only what an honest recorder would know. A crooked box is not said to be square.
-    fn metadata(&self, config: &SchemeConfig) -> Metadata {
-        let world = &config.world;
-        let square =
-            world.motion.shape.up_normals_b == tumble_sim::motion::BoxShape::square(Vector3::zeros()).up_normals_b;
-        Metadata {
-            sensor: Some("simulated MPU-9250".into()),
-            gyro_range_dps: self.ranges.map(|(gyro, _)| gyro),
-            accel_range_g: self.ranges.map(|(_, accel)| accel),
-            rate_hz: Some(self.rate_hz),
-            gravity_mps2: Some(world.gravity_mps2),
-            latitude_deg: Some(world.latitude_deg),
-            turns: Some(if config.turns_word() == "by-hand" { TurnStops::ByHand } else { TurnStops::Fenced }),
-            box_faces: Some(if square { BoxFaces::Square } else { BoxFaces::Unknown }),
-        }
+/// Runs a simulation and writes it down as a recorder would.
+pub(crate) fn make(config: &SchemeConfig) -> Result<Made, SimError> {
+    let made = config.record()?;
+    let rows = made.samples.iter().map(row).collect();
+    let recording = Recording { metadata: metadata(config, made.rate_hz), rows, notices: Vec::new() };
+    Ok(Made { recording, truth: made.truth })
+}
+
+/// Says only what an honest recorder would know. A crooked box is not said to be square.
+fn metadata(config: &SchemeConfig, rate_hz: f64) -> Metadata {
+    let world = &config.world;
+    let square = world.motion.shape.up_normals_b == tumble_sim::motion::BoxShape::square(Vector3::zeros()).up_normals_b;
+    Metadata {
+        sensor: Some("simulated MPU-9250".into()),
+        gyro_range_dps: world.sensor.quantisation.map(|ranges| ranges.gyro_range_dps),
+        accel_range_g: world.sensor.quantisation.map(|ranges| ranges.accel_range_g),
+        rate_hz: Some(rate_hz),
+        gravity_mps2: Some(world.gravity_mps2),
+        latitude_deg: Some(world.latitude_deg),
+        turns: Some(if config.turns_word() == "by-hand" { TurnStops::ByHand } else { TurnStops::Fenced }),
+        box_faces: Some(if square { BoxFaces::Square } else { BoxFaces::Unknown }),
     }
 }
 

@@ -5,6 +5,7 @@
 
 mod knock;
 mod plan;
+mod platform;
 mod segment;
 mod setting;
 mod shape;
@@ -12,6 +13,7 @@ mod tone;
 
 pub use knock::Knock;
 pub use plan::Standing;
+pub(crate) use platform::{Course, Lean, Shortfall};
 pub use segment::{Kind, Segment, Station};
 pub use setting::{BoxShape, Hands, MotionConfig, Stops, Table, Vibration};
 
@@ -141,6 +143,8 @@ pub struct Motion {
     standing: Standing,
     segments: Vec<Segment>,
     knocks: Vec<Knock>,
+    pub(crate) leans: Vec<Lean>,
+    pub(crate) shortfall: Option<Shortfall>,
 }
 
 impl Motion {
@@ -157,7 +161,16 @@ impl Motion {
                 * config.shape.standing(Face::PlusZ, standing.offset_rad),
             position_n_m: Vector3::zeros(),
         };
-        Ok(Self { config, rng, start, standing, segments: Vec::new(), knocks: Vec::new() })
+        Ok(Self {
+            config,
+            rng,
+            start,
+            standing,
+            segments: Vec::new(),
+            knocks: Vec::new(),
+            leans: Vec::new(),
+            shortfall: None,
+        })
     }
 
     /// What it was made from.
@@ -175,6 +188,7 @@ impl Motion {
             return start_s;
         }
         let from = self.station();
+        let primitive = self.shortened(primitive);
         let planner = Planner { config: &self.config, rng: &mut self.rng, from, standing: self.standing };
         let plan = planner.plan(&primitive);
         let end_s = start_s + plan.duration_s;
@@ -186,6 +200,17 @@ impl Motion {
             self.knocks.push(Knock::draw(end_s - settle_s, settle_s, peak, &mut self.rng));
         }
         end_s
+    }
+
+    /// The same, but for a turn that stops short.
+    fn shortened(&self, primitive: Primitive) -> Primitive {
+        match (primitive, self.shortfall) {
+            (Primitive::Turn { signed_angle_rad, duration_s }, Some(shortfall)) => {
+                let turn = self.segments.iter().filter(|segment| segment.kind() == Kind::Turn).count();
+                Primitive::Turn { signed_angle_rad: shortfall.of(turn, signed_angle_rad), duration_s }
+            }
+            _ => primitive,
+        }
     }
 
     /// Someone bumps the table at `start_s` with this peak acceleration (m/s²); it rings for about half a second.
@@ -238,6 +263,9 @@ impl Motion {
             let omega = TAU * vibration.frequency_hz;
             let shake = Jet::phase(omega, 0.0, t_s).sin() * (-vibration.amplitude_mps2 / (omega * omega));
             centre += Path::along(&vibration.direction_n.normalize(), shake);
+        }
+        for lean in &self.leans {
+            spin = lean.carry(t_s, spin, &mut centre);
         }
         Kinematics { spin, centre }
     }

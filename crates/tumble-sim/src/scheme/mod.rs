@@ -2,15 +2,18 @@
 
 mod imperfection;
 mod plan;
+mod realistic;
+mod record;
 
 pub use imperfection::Imperfection;
 pub(crate) use plan::{any_attitude, heading};
+pub use record::Recording;
 
-use crate::error::SimError;
+use crate::effect::Effect;
 use crate::face::Face;
 use crate::motion::{Hands, Stops, Table};
-use crate::sensor::{Sample, SensorTruth, Truth};
-use crate::world::{World, WorldConfig};
+use crate::sensor::SensorTruth;
+use crate::world::WorldConfig;
 
 /// What is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,7 +66,8 @@ impl Scheme {
 /// Which way the single turns go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TurnOrder {
-    /// Counter-clockwise on faces 1, 3, 5, clockwise on 2, 4, 6: the same sign in the sensor's frame for both faces of an axis.
+    /// Counter-clockwise on faces 1, 3, 5, clockwise on 2, 4, 6: the same sign in the sensor's frame for both faces of
+    /// an axis.
     Paper,
     /// Counter-clockwise from above on every face: opposite signs in the sensor's frame, which cancels a bias.
     SameFromAbove,
@@ -129,10 +133,16 @@ pub struct SchemeConfig {
     pub turns: TurnOrder,
     /// The sensor's clock.
     pub clock: Clock,
+    /// Physics that the nominal world leaves out.
+    pub effects: Vec<Effect>,
+    /// The recorder keeps the mean of every so many samples: a lower rate with the low-pass that belongs to it. 1 keeps
+    /// all.
+    pub averaged: usize,
 }
 
 impl SchemeConfig {
-    /// The nominal world: tilt 1.5°, sensor (3, 2, 1) cm off the axis, square box, fence, sheet errors and noise, 200 Hz.
+    /// The nominal world: tilt 1.5°, sensor (3, 2, 1) cm off the axis, square box, fence, sheet errors and noise, 200
+    /// Hz.
     pub fn new(scheme: Scheme, seed: u64) -> Self {
         Self {
             scheme,
@@ -141,11 +151,13 @@ impl SchemeConfig {
             faces: Face::ALL,
             turns: if scheme == Scheme::Single { TurnOrder::Paper } else { TurnOrder::SameFromAbove },
             clock: Clock { rate_error: 0.0, stamps: Stamps::True },
+            effects: Vec::new(),
+            averaged: 1,
         }
     }
 
-    /// The paper's simulation: [`Scheme::Single`] with Table 1's gyro, tilt 1.5°, exact turns by a machine with the sensor on the
-    /// axis. The accelerometer, of which the paper gives no errors, is drawn from the sheet by the seed.
+    /// The paper's simulation: [`Scheme::Single`] with Table 1's gyro, tilt 1.5°, exact turns by a machine with the
+    /// sensor on the axis. The accelerometer, of which the paper gives no errors, is drawn from the sheet by the seed.
     pub fn paper(seed: u64) -> Self {
         let mut config = Self::new(Scheme::Single, seed);
         config.world.sensor.truth = SensorTruth::paper_table_1(config.world.sensor.truth.accel);
@@ -159,51 +171,4 @@ impl SchemeConfig {
     pub fn turns_word(&self) -> &'static str {
         if matches!(self.world.motion.hands.stops, Stops::ByHand { .. }) { "by-hand" } else { "fenced" }
     }
-
-    /// Makes the recording.
-    ///
-    /// # Errors
-    /// If a setting is out of its range; it is named.
-    pub fn record(&self) -> Result<Recording, SimError> {
-        let timing = &self.timing;
-        for (name, value) in [
-            ("start_rest_s", timing.start_rest_s),
-            ("still_s", timing.still_s),
-            ("turn_s", timing.turn_s),
-            ("move_s", timing.move_s),
-        ] {
-            SimError::check(name, value, |v| (0.0..=3600.0).contains(&v), "0 to 3600 s")?;
-        }
-        if let Scheme::Tumble { duration_s, violence } = self.scheme {
-            SimError::check("tumble.duration_s", duration_s, |v| (0.0..=3600.0).contains(&v), "0 to 3600 s")?;
-            SimError::check("tumble.violence", violence, |v| (0.0..=5.0).contains(&v), "0 to 5")?;
-        }
-        SimError::check("clock.rate_error", self.clock.rate_error, |v| v.abs() < 0.5, "below 0.5")?;
-        let mut world = World::new(&self.world)?;
-        let end_s = plan::queue(self, &mut world);
-        let rate_hz = self.world.sensor.rate_hz;
-        let true_rate_hz = rate_hz * (1.0 + self.clock.rate_error);
-        let count = (end_s * true_rate_hz).floor() as usize + 1;
-        let samples = (0..count)
-            .map(|k| {
-                let sample = world.sample(k as f64 / true_rate_hz);
-                match self.clock.stamps {
-                    Stamps::True => sample,
-                    Stamps::Nominal => Sample { t_s: k as f64 / rate_hz, ..sample },
-                }
-            })
-            .collect();
-        Ok(Recording { samples, truth: world.truth()?, world })
-    }
-}
-
-/// Samples and, apart from them, the truth.
-#[derive(Debug, Clone)]
-pub struct Recording {
-    /// In order of time, beginning at 0.
-    pub samples: Vec<Sample>,
-    /// The parameters, averaged over the recording.
-    pub truth: Truth,
-    /// For a test's eyes only: true attitudes, moves, turns.
-    pub world: World,
 }

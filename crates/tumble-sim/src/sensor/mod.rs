@@ -17,9 +17,11 @@ pub use quantise::Quantisation;
 pub use triad::{PaperAngles, Triad};
 pub use truth::{AccelTruth, FrameTruth, GyroTruth, SettingTruth, Truth};
 
+use crate::effect::{Chain, Instant, Signal};
 use crate::error::SimError;
 use crate::rng::{Purpose, Rng};
-use nalgebra::{Matrix3, Vector3};
+use crate::world::Ideal;
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// One sample as the sensor gives it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,15 +87,35 @@ impl Sensor {
     ///
     /// Ask at increasing `t_s`: each call is one sample of noise, and the biases wander by the time between calls.
     pub fn measure(&mut self, t_s: f64, rate: &Vector3<f64>, force: &Vector3<f64>) -> Sample {
+        let at = Instant {
+            t_s,
+            ideal: Ideal { angular_rate_rad_s: *rate, specific_force_mps2: *force },
+            angular_acceleration_rad_s2: Vector3::zeros(),
+            temperature_degc: self.config.thermal.at(t_s),
+            rotation_n_from_b: UnitQuaternion::identity(),
+        };
+        self.measure_with(&at, &mut Chain::default())
+    }
+
+    /// The same with effects between the linear model and the noise, and between the noise and the rounding.
+    pub(crate) fn measure_with(&mut self, at: &Instant, effects: &mut Chain) -> Sample {
+        let t_s = at.t_s;
+        let (rate, force) = (&at.ideal.angular_rate_rad_s, &at.ideal.specific_force_mps2);
         let (first_s, last_s) = self.span_s.unwrap_or((t_s, t_s));
         let dt_s = (t_s - last_s).max(0.0);
         self.span_s = Some((first_s, last_s.max(t_s)));
         let (gyro_random, accel_random) = self.wander(t_s, dt_s);
         let (gyro, accel) = self.triads_at(t_s);
-        let rate = gyro.distort(rate) + self.config.truth.gyro_g_sensitivity * force;
-        let rate = rate + gyro_random + self.gyro_noise.step(&mut self.rng);
-        let force = accel.distort(force) + accel_random + self.accel_noise.step(&mut self.rng);
+        let mut signal = Signal {
+            angular_rate_rad_s: gyro.distort(rate) + self.config.truth.gyro_g_sensitivity * force + gyro_random,
+            specific_force_mps2: accel.distort(force) + accel_random,
+        };
+        effects.analog(at, &mut signal);
+        signal.angular_rate_rad_s += self.gyro_noise.step(&mut self.rng);
+        signal.specific_force_mps2 += self.accel_noise.step(&mut self.rng);
         let temperature_degc = self.config.thermal.at(t_s) + self.config.noise.temperature_degc * self.rng.normal();
+        effects.converter(at, &mut signal);
+        let Signal { angular_rate_rad_s: rate, specific_force_mps2: force } = signal;
         let range = self.config.quantisation;
         Sample {
             t_s,

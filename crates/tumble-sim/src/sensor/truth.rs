@@ -1,6 +1,7 @@
 //! The truth in the contract's convention: `ideal = correction · (raw − bias)`, SI, in the box's and in the accelerometer's frame.
 
 use super::config::SensorTruth;
+use crate::effect::EffectTruth;
 use crate::error::SimError;
 use crate::motion::MotionConfig;
 use nalgebra::{Matrix3, Vector3};
@@ -77,6 +78,8 @@ pub struct Truth {
     pub rotation_accelerometer_from_box: Rows,
     /// Table, box and place.
     pub setting: SettingTruth,
+    /// What was added to the nominal world. The parameters above are those without it, but for what it set itself.
+    pub effects: Vec<EffectTruth>,
 }
 
 impl Truth {
@@ -108,6 +111,7 @@ impl Truth {
                 gravity_mps2,
                 latitude_deg,
             },
+            effects: Vec::new(),
         })
     }
 }

@@ -3,8 +3,10 @@
 //! 0 done, 1 the input was refused (with reasons on standard error), 2 wrong usage (clap's).
 
 mod calibrate;
+mod effects;
 mod export;
 mod output;
+mod reveal;
 mod serial;
 mod simulate;
 mod study;
@@ -29,6 +31,8 @@ enum Command {
     Calibrate(calibrate::Arguments),
     /// Make a recording of a simulated sensor whose errors are known
     Simulate(simulate::Arguments),
+    /// Tell what a concealed recording hides
+    Reveal(reveal::Arguments),
     /// Record the board's raw samples
     Record(serial::RecordArguments),
     /// Talk to the board
@@ -96,6 +100,7 @@ pub fn run(cli: &Cli) -> ExitCode {
     let result = match &cli.command {
         Command::Calibrate(arguments) => calibrate::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
+        Command::Reveal(arguments) => reveal::run(arguments),
         Command::Record(arguments) => serial::record(arguments),
         Command::Console(arguments) => serial::console(arguments),
         Command::Verify(arguments) => serial::verify(arguments),
