@@ -3,6 +3,7 @@
 //! 0 done, 1 the input was refused (with reasons on standard error), 2 wrong usage (clap's).
 
 mod calibrate;
+mod diagnose;
 mod effects;
 mod export;
 mod output;
@@ -33,6 +34,8 @@ enum Command {
     Simulate(simulate::Arguments),
     /// Tell what a concealed recording hides
     Reveal(reveal::Arguments),
+    /// Find which physics a recording contains that the nominal model leaves out
+    Diagnose(diagnose::Arguments),
     /// Record the board's raw samples
     Record(serial::RecordArguments),
     /// Talk to the board
@@ -99,6 +102,7 @@ impl<E: std::error::Error> From<E> for Refusal {
 pub fn run(cli: &Cli) -> ExitCode {
     let result = match &cli.command {
         Command::Calibrate(arguments) => calibrate::run(arguments),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Reveal(arguments) => reveal::run(arguments),
         Command::Record(arguments) => serial::record(arguments),

@@ -2,7 +2,12 @@
 
 pub mod catalogue;
 pub mod diagnosis;
+pub mod exhibits;
+pub mod findings;
 pub mod gates;
 pub mod prepare;
+mod run;
 pub mod search;
 pub mod twin;
+
+pub use run::{Options, Outcome, Progress, diagnose};

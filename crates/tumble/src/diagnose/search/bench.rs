@@ -231,3 +231,23 @@ impl Bench {
         }
     }
 }
+
+impl Bench {
+    /// Rows that carry these columns alone, in this order, under the noise in force.
+    pub fn rows_of(&mut self, columns: &[usize]) -> Rows {
+        let terms: Vec<Term> = columns.iter().map(|&column| Term { column, width: 1.0, mean: 0.0 }).collect();
+        let (columns, influences) = self.borrow_columns(&terms);
+        let rows = self.twin.rows(&influences);
+        self.return_columns(&columns, influences);
+        rows
+    }
+
+    /// Terms that put an accepted effect back at exactly the size at which it was taken out of the samples.
+    pub fn put_back(&self, accepted: &Accepted) -> Vec<Term> {
+        if self.candidates[accepted.candidate].walk.is_some() {
+            return Vec::new();
+        }
+        let back = self.terms(accepted.candidate, accepted.variant, &accepted.taken);
+        back.into_iter().map(|term| Term { width: 1e-9 * term.width, ..term }).collect()
+    }
+}

@@ -5,3 +5,4 @@ pub mod generic;
 pub mod ledger;
 pub mod null;
 pub mod select;
+pub mod unknown;

@@ -57,7 +57,7 @@ pub const CHANNELS: [&str; 6] = ["gyro_x", "gyro_y", "gyro_z", "accel_x", "accel
 
 /// All rows of a pass: under the nominal model `values` are independent standard normals, and a candidate of size θ shifts
 /// them by `responses · θ`.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Rows {
     /// Addresses.
     pub at: Vec<Address>,

@@ -1,0 +1,241 @@
+//! From recording to verdict.
+
+use nalgebra::Vector3;
+use tumble_core::estimate::Conditions;
+use tumble_core::procedure::BoxFaces;
+
+use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
+use super::exhibits::{self, Exhibits};
+use super::findings::{self, Finding, TIE};
+use super::gates::{self, Gated};
+use super::prepare::prepare_samples;
+use super::search::bench::Bench;
+use super::search::select::{self, Selection};
+use super::search::unknown::{self, Leftover};
+use super::twin::Twin;
+use super::twin::data::Raw;
+use crate::calibrate::{self, Session};
+use crate::recording::{Inference, Reading, Recording};
+
+/// Rests must point in at least this many different directions for a verdict on a calibration.
+const LEAST_POSES: usize = 4;
+/// Directions of gravity less than this apart are one pose, rad (30°).
+const POSE_RAD: f64 = 0.52;
+
+/// What may be asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Effects that the search is not to know.
+    pub without: Vec<String>,
+    /// Of the draws that set thresholds.
+    pub seed: u64,
+    /// Table and box, instead of what the recording states.
+    pub conditions: Option<Conditions>,
+}
+
+/// The answer and its pictures.
+pub struct Outcome {
+    /// The contract's object.
+    pub diagnosis: Diagnosis,
+    /// None where no physics could be fitted.
+    pub exhibits: Option<Exhibits>,
+}
+
+/// Hears what is being done, and which share of all is done.
+pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;
+
+/// Diagnoses a recording.
+pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progress) -> Outcome {
+    progress("reading", 0.0);
+    let inference = Inference::of(recording);
+    let origin_s = recording.origin_s();
+    let conditions = options.conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
+    let mut readings = recording.samples(&inference);
+    let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
+    let session = Session { readings: &readings, origin_s, lost: inference.missing(), conditions };
+    let (tape, _) = session.tape(1.0);
+    progress("samples", 0.05);
+    let gated = gates::examine(&gates::Scene {
+        recording,
+        inference: &inference,
+        samples: &samples,
+        segments: tape.segments(),
+    });
+    if let Some(stop) = &gated.stop {
+        return without_physics(&gated, stop.clone());
+    }
+    repair(&mut samples, &mut readings, &gated);
+    let prepared = match prepare_samples(samples, &readings, origin_s, inference.missing(), conditions) {
+        Ok(prepared) => prepared,
+        Err(why) => return without_physics(&gated, why.0),
+    };
+    let mut without = options.without.clone();
+    without.extend(gated.imitated.iter().cloned());
+    let mut bench = Bench::new(prepared.twin, &without);
+    let selection = select::select(&mut bench, options.seed, progress);
+    progress("what is left", 0.85);
+    let leftover = unknown::weigh(&mut bench, None);
+    let found = findings::findings(&mut bench, &selection, origin_s);
+    let judged = judge(&mut bench, &selection, &leftover, found);
+    progress("report", 0.95);
+    let exhibits = exhibits::exhibits(&bench, &selection, &judged.named, &leftover, origin_s);
+    let diagnosis = assemble(&bench, &selection, &leftover, judged, gated, conditions, origin_s);
+    Outcome { diagnosis, exhibits: Some(exhibits) }
+}
+
+/// What of the accepted keeps its name.
+struct Judged {
+    named: Vec<Finding>,
+    demoted: Vec<Finding>,
+    unknown: bool,
+    /// Shapes that explain better than a name did.
+    better: Vec<(String, f64)>,
+    p_value: f64,
+}
+
+/// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
+fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
+    let mut judged = Judged {
+        named: Vec::new(),
+        demoted: Vec::new(),
+        unknown: leftover.is_real(),
+        better: Vec::new(),
+        p_value: leftover.p_value(),
+    };
+    for finding in found {
+        let id = finding.found.id.as_str();
+        let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
+            continue;
+        };
+        let noise = bench.twin.noise;
+        if bench.candidates[bench.accepted[k].candidate].walk.is_some() {
+            bench.twin.noise = selection.null_noise;
+        }
+        let shape = unknown::weigh(bench, Some(k));
+        bench.twin.noise = noise;
+        let clear = finding.found.evidence - shape.evidence;
+        if clear < -TIE {
+            judged.unknown = true;
+            judged.p_value = judged.p_value.min((clear).exp());
+            judged.better.extend(exhibits::correlates(bench, &shape));
+            judged.demoted.push(finding);
+        } else if leftover.is_real() && clear < TIE {
+            judged.demoted.push(finding);
+        } else {
+            judged.named.push(finding);
+        }
+    }
+    judged
+}
+
+fn assemble(
+    bench: &Bench,
+    selection: &Selection,
+    leftover: &Leftover,
+    judged: Judged,
+    gated: Gated,
+    conditions: Conditions,
+    origin_s: f64,
+) -> Diagnosis {
+    let mut limits = findings::limits(bench, selection);
+    limits.extend(gated.limits);
+    let mut effects = gated.found;
+    effects.extend(judged.named.into_iter().map(|finding| finding.found));
+    effects.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let unknown = judged.unknown.then(|| {
+        let mut correlates = judged.better;
+        if leftover.is_real() {
+            correlates.extend(exhibits::correlates(bench, leftover));
+        }
+        correlates.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let mut resembles: Vec<String> = judged.demoted.iter().map(|finding| finding.found.id.clone()).collect();
+        let gains = selection.first.iter().filter(|score| score.gain > selection.threshold);
+        let alike = gains.map(|score| bench.candidates[score.candidate].effect.card.id.to_string());
+        resembles.extend(alike.filter(|id| !effects.iter().any(|effect| effect.id == *id)).take(3));
+        resembles.dedup();
+        Unknown {
+            place: findings::place(bench, &leftover.rows, &leftover.signal, origin_s),
+            correlates_with: correlates.into_iter().map(|(shape, _)| shape).take(5).collect(),
+            resembles,
+            p_value: judged.p_value,
+        }
+    });
+    let poses = poses(&bench.twin);
+    let mut reasons = Vec::new();
+    let verdict = match (&unknown, effects.is_empty()) {
+        (Some(_), _) => Verdict::UnknownEffect,
+        (None, false) => Verdict::EffectFound,
+        (None, true) if poses < LEAST_POSES => Verdict::NotTestable,
+        (None, true) => Verdict::NothingMissing,
+    };
+    if poses < LEAST_POSES {
+        reasons.push(format!(
+            "The sensor rested in {poses} different pose(s): record rests on all six faces, with a full turn on each, so that \
+             scale, axes and gravity's influence can show."
+        ));
+    }
+    if bench.twin.noise.facet_sigma_rad.is_none() && conditions.faces == BoxFaces::Unknown {
+        reasons.push("The box is not stated to be square, so the table's angle was not tested.".into());
+    }
+    let fit = findings::fit_report(bench, selection);
+    Diagnosis {
+        format: "tumble-diagnosis",
+        version: 1,
+        verdict,
+        effects,
+        unknown,
+        fit,
+        detection_limits: limits,
+        reasons,
+    }
+}
+
+fn without_physics(gated: &Gated, why: String) -> Outcome {
+    let verdict = if gated.found.is_empty() { Verdict::NotTestable } else { Verdict::EffectFound };
+    let diagnosis = Diagnosis {
+        format: "tumble-diagnosis",
+        version: 1,
+        verdict,
+        effects: gated.found.clone(),
+        unknown: None,
+        fit: FitReport::default(),
+        detection_limits: gated.limits.clone(),
+        reasons: vec![why],
+    };
+    Outcome { diagnosis, exhibits: None }
+}
+
+/// Puts neighbours' means for samples that are no measurements, and axes and scales right.
+fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
+    for &index in &gated.repaired {
+        if index == 0 || index + 1 >= samples.len() {
+            continue;
+        }
+        let (before, after) = (samples[index - 1], samples[index + 1]);
+        let share = (samples[index].t_s - before.t_s) / (after.t_s - before.t_s).max(f64::MIN_POSITIVE);
+        samples[index].rate = before.rate.lerp(&after.rate, share);
+        samples[index].force = before.force.lerp(&after.force, share);
+    }
+    if let Some((rate, force)) = &gated.remap {
+        for raw in samples.iter_mut() {
+            raw.rate = rate * raw.rate;
+            raw.force = force * raw.force;
+        }
+    }
+    for (reading, raw) in readings.iter_mut().zip(samples.iter()) {
+        reading.sample.angular_rate_rad_s = raw.rate.cast();
+        reading.sample.specific_force_mps2 = raw.force.cast();
+    }
+}
+
+/// Directions of gravity at rest that differ.
+fn poses(twin: &Twin) -> usize {
+    let mut directions: Vec<Vector3<f64>> = Vec::new();
+    for stretch in twin.stretches.iter().filter(|stretch| stretch.is_rest()) {
+        let direction = twin.trajectory.moments[stretch.samples.start].force;
+        if directions.iter().all(|other| other.angle(&direction) > POSE_RAD) {
+            directions.push(direction);
+        }
+    }
+    directions.len()
+}
