@@ -1,7 +1,7 @@
 //! Samples are left out on purpose, without a filter before.
 //!
 //! Every `n`-th sample is kept, `n = round(rate/N)`: noise and motion above half of the new rate fold back. The
-//! recording says the lower rate and its stamps are true. A logger that keeps up with 20 Hz of a chip that filters at
+//! recording says the lower rate and its stamps are true. A logger that keeps up with 25 Hz of a chip that filters at
 //! 41.
 //!
 //! Magnitude: the wanted rate `N`, Hz; what comes out is the nearest whole division. A *lower* one is the larger
@@ -14,9 +14,9 @@ pub(super) static KIND: Kind = Kind {
     name: "sampled too slowly for its bandwidth",
     meaning: "the rate that is kept",
     unit: "Hz",
-    default: 20.0,
+    default: 25.0,
     values: Values::Range(1.0, 1000.0),
-    draws: (16.0, 25.0),
+    draws: (25.0, 40.0),
     source: "41 Hz of bandwidth (MPU-9250, CONFIG = 3) asks for more than 82 Hz",
     injects: true,
     make: |draw| {
