@@ -97,7 +97,7 @@ fn rivals(bench: &mut Bench, selection: &Selection, k: usize) -> Vec<(&'static s
         bench.accepted.insert(k, removed);
         bench.twin.samples = samples;
         bench.twin.noise = noise;
-        bench.twin.fit();
+        bench.fit_nominal();
         scores
     };
     let Some(best) = scores.iter().find(|score| score.candidate == own).map(|score| score.gain) else {

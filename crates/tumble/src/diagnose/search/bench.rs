@@ -65,6 +65,8 @@ pub struct Bench {
     pub families: Vec<(Family, Range<usize>)>,
     /// So far.
     pub accepted: Vec<Accepted>,
+    /// Rows about the present nominal, by the noise they were made under: they cost a quarter of a second.
+    made: Vec<(Noise, std::sync::Arc<Rows>)>,
 }
 
 impl Bench {
@@ -103,7 +105,7 @@ impl Bench {
             })
             .collect();
         let original = twin.samples.clone();
-        Self { twin, original, influences, candidates, families, accepted: Vec::new() }
+        Self { twin, original, influences, candidates, families, accepted: Vec::new(), made: Vec::new() }
     }
 
     /// Number of columns that belong to candidates; generic shapes come after.
@@ -150,9 +152,20 @@ impl Bench {
     }
 
     /// Rows with all candidates' columns under a noise.
-    pub fn rows(&mut self, noise: Noise) -> Rows {
+    pub fn rows(&mut self, noise: Noise) -> std::sync::Arc<Rows> {
         self.twin.noise = noise;
-        self.twin.rows(&self.influences[..self.candidate_columns()])
+        if let Some((_, rows)) = self.made.iter().find(|(made, _)| *made == noise) {
+            return rows.clone();
+        }
+        let rows = std::sync::Arc::new(self.twin.rows(&self.influences[..self.candidate_columns()]));
+        self.made.push((noise, rows.clone()));
+        rows
+    }
+
+    /// Fits the nominal anew; rows made before no longer hold.
+    pub fn fit_nominal(&mut self) {
+        self.made.clear();
+        self.twin.fit();
     }
 
     /// Takes the accepted effects' best numbers out of the samples and fits the nominal anew: the non-linear refit.
@@ -171,7 +184,7 @@ impl Bench {
                 }
             }
             self.take_out();
-            self.twin.fit();
+            self.fit_nominal();
         }
     }
 

@@ -1,5 +1,7 @@
 //! Forward selection with refit, removal and swap: every candidate against the one nominal fit, given what is accepted.
 
+use std::sync::Arc;
+
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, log_mean};
 use super::null;
@@ -29,13 +31,13 @@ pub struct Selection {
     /// Scores of the first round, best first: each candidate alone.
     pub first: Vec<Score>,
     /// Rows before anything was accepted, at the null's best noise.
-    pub before: Rows,
+    pub before: Arc<Rows>,
     /// Their evidence as they are.
     pub null_scales: [f64; 6],
     /// Noise of the null.
     pub null_noise: Noise,
     /// Rows at the end.
-    pub after: Rows,
+    pub after: Arc<Rows>,
     /// ln p at the end.
     pub evidence: f64,
 }

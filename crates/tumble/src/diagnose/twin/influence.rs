@@ -14,6 +14,11 @@ pub struct Push {
 }
 
 impl Push {
+    /// Does it add nothing?
+    pub fn is_nothing(&self) -> bool {
+        self.rate == Vector3::zeros() && self.force == Vector3::zeros()
+    }
+
     /// On the gyroscope alone.
     pub fn rate(rate: Vector3<f64>) -> Self {
         Self { rate, force: Vector3::zeros() }

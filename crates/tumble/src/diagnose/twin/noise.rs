@@ -5,9 +5,9 @@ use tumble_core::setup::TurnStops;
 
 /// A turn against a fence ends no worse than this unless something is wrong with it, rad (0.3°).
 const FENCE_CAP_RAD: f64 = 0.3 * std::f64::consts::PI / 180.0;
-/// A lever arm that a sensor "in the middle of the box" has, m, and how far a turn's axis is from where other turns have it.
-pub const LEVER_SIGMA_M: f64 = 5e-3;
-/// Likewise.
+/// A lever arm that is nothing to speak of, each axis, m: (3, 2, 1) cm is how a sensor sits in a box (`docs/diagnosis.md`).
+pub const LEVER_SIGMA_M: f64 = 1.2e-2;
+/// How far a turn's axis is from where other turns have it, m.
 pub const PIVOT_SIGMA_M: f64 = 5e-3;
 /// A face of a square box, rad: 1 µm on 5 cm, and contact that repeats as well.
 pub const CONTACT_SIGMA_RAD: f64 = 30e-6;

@@ -1,6 +1,6 @@
 //! The error state, as in `tumble_core::estimate::state`, in `f64` and with the columns that candidates push through it.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{DVector, Matrix3, SMatrix, SVector, Vector3};
 
 /// Attitude error φ, frame n: `R_true = exp(φ×) R_nominal`.
 pub const ATTITUDE: usize = 0;
@@ -31,6 +31,17 @@ pub const DRIVERS: usize = 15;
 
 /// How φ grows over a step: `φ ← φ + drive · (δM, δb, Ω)`.
 pub type Drive = SMatrix<f64, 3, DRIVERS>;
+
+/// What a candidate's unit does in a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pushed {
+    /// To φ over the whole step.
+    pub attitude: [f64; 3],
+    /// To the mean calibrated rate at rest, rad/s.
+    pub rate: [f64; 3],
+    /// To the mean calibrated force less what attitude explains, m/s².
+    pub force: [f64; 3],
+}
 
 /// One scalar observation `residual = row · x + noise`.
 #[derive(Clone, Debug)]
@@ -74,13 +85,13 @@ pub struct State {
     /// P.
     pub covariance: SMatrix<f64, STATES, STATES>,
     /// One column a candidate: what its unit has put into `true − estimated` so far.
-    pub columns: DMatrix<f64>,
+    pub columns: Vec<[f64; STATES]>,
 }
 
 impl State {
     /// All zero, `columns` candidates.
     pub fn new(columns: usize) -> Self {
-        Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), columns: DMatrix::zeros(STATES, columns) }
+        Self { mean: SVector::zeros(), covariance: SMatrix::zeros(), columns: vec![[0.0; STATES]; columns] }
     }
 
     /// Forgets `count` states from `first`: zero, this sigma, related to nothing.
@@ -90,7 +101,7 @@ impl State {
             self.covariance.column_mut(index).fill(0.0);
             self.covariance[(index, index)] = sigma * sigma;
             self.mean[index] = 0.0;
-            self.columns.row_mut(index).fill(0.0);
+            self.columns.iter_mut().for_each(|column| column[index] = 0.0);
         }
     }
 
@@ -100,7 +111,7 @@ impl State {
     }
 
     /// φ moves by `drive · (δM, δb, Ω)` and gains `variance` on every axis; `push` is what each candidate puts into φ.
-    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: &DMatrix<f64>) {
+    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: &[Pushed]) {
         let moved = drive * self.covariance.fixed_view::<DRIVERS, STATES>(GYRO, 0);
         let mut rows = self.covariance.fixed_view_mut::<3, STATES>(ATTITUDE, 0);
         rows += moved;
@@ -113,11 +124,11 @@ impl State {
         let moved = drive * self.mean.fixed_rows::<DRIVERS>(GYRO);
         let mut attitude = self.mean.fixed_rows_mut::<3>(ATTITUDE);
         attitude += moved;
-        for c in 0..self.columns.ncols() {
-            for axis in 0..3 {
-                let driven: f64 = (0..DRIVERS).map(|d| drive[(axis, d)] * self.columns[(GYRO + d, c)]).sum();
-                self.columns[(axis, c)] += driven + push[(axis, c)];
-            }
+        for (column, push) in self.columns.iter_mut().zip(push) {
+            let driven: [f64; 3] = std::array::from_fn(|axis| {
+                (0..DRIVERS).map(|d| drive[(axis, d)] * column[GYRO + d]).sum::<f64>() + push.attitude[axis]
+            });
+            (0..3).for_each(|axis| column[axis] += driven[axis]);
         }
     }
 
@@ -135,8 +146,8 @@ impl State {
         let own = (row.fixed_columns::<3>(ATTITUDE) * normal)[0];
         self.covariance[(FENCE, FENCE)] = own + sigma * sigma;
         self.mean[FENCE] = normal.dot(&self.vector(ATTITUDE));
-        for c in 0..self.columns.ncols() {
-            self.columns[(FENCE, c)] = (0..3).map(|axis| normal[axis] * self.columns[(axis, c)]).sum();
+        for column in &mut self.columns {
+            column[FENCE] = (0..3).map(|axis| normal[axis] * column[axis]).sum();
         }
     }
 
@@ -158,11 +169,14 @@ impl State {
         let innovation = observation.residual - dot(&|i| self.mean[i]);
         self.mean.axpy(innovation / variance, &gain, 1.0);
         self.covariance.ger(-1.0 / variance, &gain, &gain, 1.0);
-        let mut response = Vec::with_capacity(self.columns.ncols());
-        for c in 0..self.columns.ncols() {
-            let moved = dot(&|i| self.columns[(i, c)]) + push(c);
-            self.columns.column_mut(c).axpy(-moved / variance, &gain, 1.0);
+        let mut response = Vec::with_capacity(self.columns.len());
+        for (c, column) in self.columns.iter_mut().enumerate() {
+            let moved = observation.row.iter().map(|&(i, k)| k * column[i]).sum::<f64>() + push(c);
             response.push(moved / sigma);
+            if moved != 0.0 {
+                let share = moved / variance;
+                column.iter_mut().zip(gain.as_slice()).for_each(|(value, gain)| *value -= share * gain);
+            }
         }
         Whitened { value: innovation / sigma, sigma, response }
     }

@@ -10,7 +10,7 @@ use tumble_core::motion::path::WHOLE_TURN;
 use super::data::{Deed, Stretch};
 use super::influence::Influence;
 use super::rows::{Address, Class, Rows};
-use super::state::{self, Drive, Observation, State, Whitened, by_rows};
+use super::state::{self, Drive, Observation, Pushed, State, Whitened, by_rows};
 use super::trajectory::Moment;
 use super::{Pass, noise};
 
@@ -49,9 +49,7 @@ struct Sums {
     drive: Drive,
     mean_drive: Drive,
     /// −R M δω summed, per candidate.
-    push: DMatrix<f64>,
-    rate_push: DMatrix<f64>,
-    force_push: DMatrix<f64>,
+    push: Vec<Pushed>,
     duration_s: f64,
 }
 
@@ -67,23 +65,17 @@ struct Node {
 impl Sums {
     /// A candidate's push (calibrated, frame b) at a node.
     fn add(&mut self, c: usize, rate: Vector3<f64>, mut force: Vector3<f64>, node: &Node) {
+        let pushed = &mut self.push[c];
         let any_rate = rate != Vector3::zeros();
         if !node.solid {
-            if any_rate {
-                let step = node.to_n * rate * -node.dt_s;
-                let mut total = self.push.column_mut(c);
-                total += step;
-                force -= node.tilt * step * 0.5;
-            }
-            force += node.tilt * self.push.column(c);
+            let step = if any_rate { node.to_n * rate * -node.dt_s } else { Vector3::zeros() };
+            let middle = Vector3::from(pushed.attitude) + step * 0.5;
+            force += node.tilt * middle;
+            pushed.attitude = (Vector3::from(pushed.attitude) + step).into();
         } else if any_rate {
-            let mut mean = self.rate_push.column_mut(c);
-            mean += rate * node.share;
+            pushed.rate = (Vector3::from(pushed.rate) + rate * node.share).into();
         }
-        if force != Vector3::zeros() {
-            let mut mean = self.force_push.column_mut(c);
-            mean += force * node.share;
-        }
+        pushed.force = (Vector3::from(pushed.force) + force * node.share).into();
     }
 }
 
@@ -219,9 +211,7 @@ impl<'a> Walk<'a> {
         let mut sums = Sums {
             drive: Drive::zeros(),
             mean_drive: Drive::zeros(),
-            push: DMatrix::zeros(3, columns),
-            rate_push: DMatrix::zeros(3, columns),
-            force_push: DMatrix::zeros(3, columns),
+            push: vec![Pushed::default(); columns],
             duration_s: self.moment(last).t_s - self.moment(first).t_s,
         };
         let solid = matches!(stretch.deed, Deed::Rest { .. });
@@ -263,9 +253,12 @@ impl<'a> Walk<'a> {
             for (c, influence) in self.influences.iter().enumerate() {
                 match influence {
                     // The nominal carries its own Earth; what it lacks turns frame n under the box.
-                    Influence::Earth(along, unit) if !solid => sums.push[(*along, c)] -= unit * dt_s,
+                    Influence::Earth(along, unit) if !solid => sums.push[c].attitude[*along] -= unit * dt_s,
                     Influence::Reading(reading) => {
                         let push = reading(moment);
+                        if solid && push.is_nothing() {
+                            continue;
+                        }
                         sums.add(c, nominal.gyro * push.rate, nominal.accel * push.force, &node);
                     }
                     _ => {}
@@ -302,7 +295,7 @@ impl<'a> Walk<'a> {
                 .with(state::EARTH, to_b.row(axis).iter().copied());
             let earth = |c: usize| match self.influences[c] {
                 Influence::Earth(along, unit) => unit * to_b[(axis, along)],
-                _ => sums.rate_push[(axis, c)],
+                _ => sums.push[c].rate[axis],
             };
             // Earth's influence on the residual: the true rate is there, `M (raw − b) = Rᵀ Ω`.
             let whitened = self.state.observe(&observation, earth);
@@ -348,7 +341,7 @@ impl<'a> Walk<'a> {
             }
             let push = |c: usize| match self.influences[c] {
                 Influence::Lever(along, unit) if turning => unit * lever[(axis, along)],
-                _ => sums.force_push[(axis, c)],
+                _ => sums.push[c].force[axis],
             };
             let whitened = self.state.observe(&observation, push);
             self.push(whitened, class, 3 + axis, stretch, (first, last), late);
