@@ -189,11 +189,8 @@ fn setting_sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
             let mut terms = others.clone();
             // The variant in force: put-back and itself share columns; free ones replace the fixed.
             terms.retain(|term| !variants[variant].columns.contains(&term.column));
-            terms.extend(bench.terms(
-                accepted.candidate,
-                variant,
-                if variant == accepted.variant { &accepted.taken } else { &[] },
-            ));
+            let taken: &[f64] = if variant == accepted.variant { &accepted.taken } else { &[] };
+            terms.extend(bench.terms(accepted.candidate, variant, accepted.widening, taken));
             Some((variants[variant].setting?.1, ledger.fit(&terms).evidence))
         })
         .collect();

@@ -107,13 +107,8 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
             continue;
         };
-        let noise = bench.twin.noise;
-        if bench.candidates[bench.accepted[k].candidate].walk.is_some() {
-            bench.twin.noise = selection.null_noise;
-        }
-        let shape = unknown::weigh(bench, Some(k));
-        bench.twin.noise = noise;
-        let clear = finding.found.evidence - shape.evidence;
+        let shape = shape_instead(bench, selection, k);
+        let clear = selection.evidence - (shape.base + shape.evidence);
         if clear < -TIE {
             judged.unknown = true;
             judged.p_value = judged.p_value.min((clear).exp());
@@ -126,6 +121,24 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         }
     }
     judged
+}
+
+/// The best that shapes without a name do in the place of an accepted effect, at its noise and at the null's.
+fn shape_instead(bench: &mut Bench, selection: &Selection, k: usize) -> Leftover {
+    let noise = bench.twin.noise;
+    let walks = bench.candidates[bench.accepted[k].candidate].walk.is_some();
+    let mut best: Option<Leftover> = None;
+    for noise in
+        [selection.null_noise, noise].into_iter().take(if walks || noise == selection.null_noise { 1 } else { 2 })
+    {
+        bench.twin.noise = noise;
+        let shape = unknown::weigh(bench, Some(k));
+        if best.as_ref().is_none_or(|best| shape.base + shape.evidence > best.base + best.evidence) {
+            best = Some(shape);
+        }
+    }
+    bench.twin.noise = noise;
+    best.unwrap_or_else(|| unknown::weigh(bench, Some(k)))
 }
 
 fn assemble(

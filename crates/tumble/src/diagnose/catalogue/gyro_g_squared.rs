@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{AXES, Card, DPS, Effect, G, Model, Variant, parameter, reading};
+use super::{AXES, Card, DPS, Effect, G, Model, Variant, gyro_axes, parameter, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::influence::Push;
 
@@ -20,14 +20,19 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
+    // Each axis by its own force; or all nine, of which a common change of a row is a bias and cannot show where forces
+    // are gravity alone.
+    let own = gyro_axes("dps/g^2", 0.05, |axis, moment| DPS * (moment.force[axis] / G).powi(2));
     let pairs = || (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
-    Model::Shift(vec![Variant {
+    let squared = |i: usize, j: usize| {
+        reading(move |moment| Push::rate(Vector3::ith(i, DPS * ((moment.force[j] / G).powi(2) - 1.0 / 3.0))))
+    };
+    let all = Variant {
         setting: None,
         parameters: pairs()
             .map(|(i, j)| parameter(format!("{}_per_{}_squared", AXES[i], AXES[j]), "dps/g^2", 0.05))
             .collect(),
-        influences: pairs()
-            .map(|(i, j)| reading(move |moment| Push::rate(Vector3::ith(i, DPS * (moment.force[j] / G).powi(2)))))
-            .collect(),
-    }])
+        influences: pairs().map(|(i, j)| squared(i, j)).collect(),
+    };
+    Model::Shift(vec![own, all])
 }

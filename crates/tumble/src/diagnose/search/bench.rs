@@ -17,6 +17,10 @@ pub const HEALTHY: [f64; 3] = [1.0, 9.0, 100.0];
 /// Levels that count as an effect.
 pub const WANDERING: [f64; 6] = [400.0, 1600.0, 6400.0, 25_600.0, 102_400.0, 409_600.0];
 
+/// An effect may be this much larger than typical: the prior is a mixture of widths, so that a large one is not shrunk, and
+/// what shrinking would leave is not taken for a second effect.
+pub const WIDENINGS: [f64; 3] = [1.0, 4.0, 16.0];
+
 /// A variant with its place among the columns.
 #[derive(Clone, Debug)]
 pub struct Placed {
@@ -47,6 +51,8 @@ pub struct Accepted {
     pub candidate: usize,
     /// Which of its variants.
     pub variant: usize,
+    /// Of [`WIDENINGS`].
+    pub widening: f64,
     /// Taken out of the samples already.
     pub taken: Vec<f64>,
 }
@@ -114,11 +120,11 @@ impl Bench {
     }
 
     /// Terms of a variant, what is taken out of the samples counted.
-    pub fn terms(&self, candidate: usize, variant: usize, taken: &[f64]) -> Vec<Term> {
+    pub fn terms(&self, candidate: usize, variant: usize, widening: f64, taken: &[f64]) -> Vec<Term> {
         let placed = &self.candidates[candidate].variants[variant];
         let term = |(i, column): (usize, usize)| Term {
             column,
-            width: placed.parameters[i].width,
+            width: widening * placed.parameters[i].width,
             mean: -taken.get(i).copied().unwrap_or(0.0),
         };
         placed.columns.clone().enumerate().map(term).collect()
@@ -129,26 +135,28 @@ impl Bench {
         let chosen = self.accepted.iter().enumerate().filter(|(k, _)| Some(*k) != but);
         chosen
             .filter(|(_, accepted)| self.candidates[accepted.candidate].walk.is_none())
-            .flat_map(|(_, accepted)| self.terms(accepted.candidate, accepted.variant, &accepted.taken))
+            .flat_map(|(_, accepted)| {
+                self.terms(accepted.candidate, accepted.variant, accepted.widening, &accepted.taken)
+            })
             .collect()
     }
 
-    /// A candidate beside other terms: evidence over its variants, and the best of them.
-    pub fn weigh(&self, ledger: &Ledger, others: &[Term], candidate: usize) -> (f64, usize, Fit) {
-        let count = self.candidates[candidate].variants.len();
-        let mut best: Option<(f64, usize, Fit)> = None;
-        let mut all = Vec::with_capacity(count);
-        for variant in 0..count {
-            let mut terms = others.to_vec();
-            terms.extend(self.terms(candidate, variant, &[]));
-            let fit = ledger.fit(&terms);
-            all.push(fit.evidence);
-            if best.as_ref().is_none_or(|best| fit.evidence > best.0) {
-                best = Some((fit.evidence, variant, fit));
+    /// A candidate beside other terms: evidence over its variants and widenings, and the best of them.
+    pub fn weigh(&self, ledger: &Ledger, others: &[Term], candidate: usize) -> (f64, usize, f64) {
+        let mut best = (f64::NEG_INFINITY, 0, 1.0);
+        let mut all = Vec::new();
+        for variant in 0..self.candidates[candidate].variants.len() {
+            for widening in WIDENINGS {
+                let mut terms = others.to_vec();
+                terms.extend(self.terms(candidate, variant, widening, &[]));
+                let evidence = ledger.fit(&terms).evidence;
+                all.push(evidence);
+                if evidence > best.0 {
+                    best = (evidence, variant, widening);
+                }
             }
         }
-        let (_, variant, fit) = best.unwrap_or_else(|| (f64::NEG_INFINITY, 0, ledger.fit(others)));
-        (log_mean(&all), variant, fit)
+        (log_mean(&all), best.1, best.2)
     }
 
     /// Rows with all candidates' columns under a noise.
@@ -260,7 +268,7 @@ impl Bench {
         if self.candidates[accepted.candidate].walk.is_some() {
             return Vec::new();
         }
-        let back = self.terms(accepted.candidate, accepted.variant, &accepted.taken);
+        let back = self.terms(accepted.candidate, accepted.variant, accepted.widening, &accepted.taken);
         back.into_iter().map(|term| Term { width: 1e-9 * term.width, ..term }).collect()
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use tumble_sim::rng::{Purpose, Rng};
 
-use super::bench::Bench;
+use super::bench::{Bench, WIDENINGS};
 use super::ledger::{Term, log_mean};
 use crate::diagnose::twin::rows::{Class, Rows};
 
@@ -28,7 +28,8 @@ pub fn threshold(bench: &Bench, rows: &Rows, scales: &[f64; 6], seed: u64) -> f6
     let weighers: Vec<Vec<Weigher>> = (0..bench.candidates.len())
         .map(|candidate| {
             (0..bench.candidates[candidate].variants.len())
-                .filter_map(|variant| weigher(&bench.terms(candidate, variant, &[]), &gram))
+                .flat_map(|variant| WIDENINGS.map(|widening| bench.terms(candidate, variant, widening, &[])))
+                .filter_map(|terms| weigher(&terms, &gram))
                 .collect()
         })
         .collect();

@@ -20,6 +20,8 @@ pub struct Score {
     pub gain: f64,
     /// Its best variant.
     pub variant: usize,
+    /// That variant's best widening.
+    pub widening: f64,
     /// Noise at which it is best.
     pub noise: Noise,
 }
@@ -91,7 +93,8 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
 
 fn accept(bench: &mut Bench, best: &Score) {
     let parameters = bench.candidates[best.candidate].variants.get(best.variant).map_or(0, |v| v.parameters.len());
-    bench.accepted.push(Accepted { candidate: best.candidate, variant: best.variant, taken: vec![0.0; parameters] });
+    let Score { candidate, variant, widening, .. } = *best;
+    bench.accepted.push(Accepted { candidate, variant, widening, taken: vec![0.0; parameters] });
     bench.twin.noise = best.noise;
     bench.refit();
 }
@@ -119,7 +122,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
     let mut terms = bench.accepted_terms(None);
     let walk = bench.candidates[removed.candidate].walk;
     if walk.is_none() {
-        let back = bench.terms(removed.candidate, removed.variant, &removed.taken);
+        let back = bench.terms(removed.candidate, removed.variant, removed.widening, &removed.taken);
         terms.extend(back.into_iter().map(|term| super::ledger::Term { width: 1e-9 * term.width, ..term }));
     }
     let mut best = f64::NEG_INFINITY;
@@ -159,8 +162,8 @@ pub fn score(bench: &mut Bench) -> Vec<Score> {
             if bench.candidates[candidate].variants.is_empty() || is_accepted(bench, candidate) {
                 continue;
             }
-            let (evidence, variant, _) = bench.weigh(&ledger, &terms, candidate);
-            let score = Score { candidate, gain: evidence - whole, variant, noise };
+            let (evidence, variant, widening) = bench.weigh(&ledger, &terms, candidate);
+            let score = Score { candidate, gain: evidence - whole, variant, widening, noise };
             match scores.iter_mut().find(|score| score.candidate == candidate) {
                 Some(old) if old.gain < score.gain => *old = score,
                 Some(_) => {}
@@ -196,5 +199,5 @@ fn score_walk(bench: &mut Bench, candidate: usize, settled: Noise, whole: f64) -
     let found = WANDERING.map(|at| (bench.fit_alone(level(at), &terms).evidence, level(at)));
     let best = found.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |best| best.1);
     let gain = log_mean(&found.map(|(evidence, _)| evidence)) - whole;
-    Score { candidate, gain, variant: 0, noise: best }
+    Score { candidate, gain, variant: 0, widening: 1.0, noise: best }
 }

@@ -29,6 +29,8 @@ struct Block {
 pub struct Leftover {
     /// ln of the mean Bayes factor over all blocks.
     pub evidence: f64,
+    /// ln p of the model without any block.
+    pub base: f64,
     /// The best block's own.
     pub best: f64,
     /// Its family.
@@ -140,7 +142,16 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
     let Some((gain, block, model, fit)) = best else {
         let signal = vec![0.0; rows.at.len()];
         let evidence = f64::NEG_INFINITY;
-        return Leftover { evidence, best: 0.0, family: 0, members: Vec::new(), ranking, signal, rows };
+        return Leftover {
+            evidence,
+            base: whole.evidence,
+            best: 0.0,
+            family: 0,
+            members: Vec::new(),
+            ranking,
+            signal,
+            rows,
+        };
     };
     let signal = (0..rows.at.len())
         .map(|i| {
@@ -148,7 +159,16 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
         })
         .collect();
     ranking.sort_by(|a: &(usize, Vec<usize>, f64), b| b.2.total_cmp(&a.2));
-    Leftover { evidence, best: gain, family: block.family, members: block.members, ranking, signal, rows }
+    Leftover {
+        evidence,
+        base: whole.evidence,
+        best: gain,
+        family: block.family,
+        members: block.members,
+        ranking,
+        signal,
+        rows,
+    }
 }
 
 /// Does the effect itself explain the block's signal?
