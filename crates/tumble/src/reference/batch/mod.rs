@@ -140,13 +140,13 @@ fn walk<'a>(setting: &Setting<'a>, from: Rest, to: Rest) -> Vec<Block<'a>> {
     let middle_s = |rest: Rest| 0.5e-6 * (segment(rest).start_us + segment(rest).end_us) as f64;
     let time_s = middle_s(to) - middle_s(from);
     let biases = [
-        (from.rate_bias(), to.rate_bias(), setting.noise.bias_walk),
-        (from.force_bias(), to.force_bias(), setting.noise.force_walk),
+        (from.rate_bias(), to.rate_bias(), setting.noise.total_bias_walk(), setting.noise.bias_slope.cast::<f64>()),
+        (from.force_bias(), to.force_bias(), setting.noise.force_walk, Vector3::zeros()),
     ];
-    let block = |(from, to, density): (usize, usize, f32)| {
+    let block = |(from, to, density, slope): (usize, usize, f32, Vector3<f64>)| {
         let sigma = (f64::from(density) * time_s).sqrt();
         Block::new((from..from + 3).chain(to..to + 3), move |x| {
-            (0..3).map(|axis| (x[to + axis] - x[from + axis]) / sigma).collect()
+            (0..3).map(|axis| (x[to + axis] - x[from + axis] - slope[axis] * time_s) / sigma).collect()
         })
     };
     biases.into_iter().map(block).collect()
