@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(normal.eliminate(1), 1);
         assert!((normal.at(1, 2) / normal.at(1, 1) - 1.98).abs() < 1e-5);
         assert!((normal.at(1, 1) - 4.0 * 5.0).abs() < 1e-5);
-        assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.027).abs() < 1e-3, "{}", normal.at(2, 2));
+        assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.018).abs() < 1e-3, "{}", normal.at(2, 2));
     }
 
     /// Inverse gamma: n squares of sum n v have a posterior mean of v n/(n − 2) under a prior uniform in log v.
