@@ -146,7 +146,7 @@ mod tests {
         ];
         let mut closures = Closures::default();
         for (visit, draw) in draws.iter().enumerate() {
-            for (turn, x) in [(1, 6.283f32), (2, -6.283)] {
+            for (turn, x) in [(1, core::f32::consts::TAU), (2, -core::f32::consts::TAU)] {
                 let scale = 1e-4 * x;
                 closures.take(visit / 2, x, scale + sigma * (draw[0] - draw[turn]), 1e-9);
             }
