@@ -8,7 +8,7 @@ use tumble_sim::{Scheme, SchemeConfig};
 
 fn run(scheme: Scheme, faces: BoxFaces, navigate: bool) -> ScenarioSummary {
     let scenario = Scenario { name: "test", scheme, faces, imperfections: Vec::new(), machine: false };
-    scenario.run(&Effort { runs: 8, threads: 2, seed: 1 }, navigate, &mut |_| {})
+    scenario.run(&Effort { runs: 8, threads: 2, seed: 1, references: false }, navigate, &mut |_| {})
 }
 
 /// rms over bound of a group of eight runs: 1.4 leaves room for what eight seeds scatter (24 values: ±14 %).

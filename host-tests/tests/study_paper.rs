@@ -11,7 +11,7 @@ fn rms(statistics: &Statistics, which: &[usize]) -> f64 {
 
 #[test]
 fn correctly_coded_it_is_a_hundred_times_better_than_published() {
-    let effort = Effort { runs: 6, threads: 2, seed: 1 };
+    let effort = Effort { runs: 6, threads: 2, seed: 1, references: false };
     let runs = run(&effort, &mut |_| {}).expect("the paper's simulation can be run");
     let story = story(&runs);
     let of = |method: Method| story.statistics.iter().find(|s| s.method == method.name()).expect("every method");

@@ -1,11 +1,15 @@
 //! From the tape to numbers with sigmas. `docs/method.md` has the equations.
 
+pub mod closures;
 pub mod device;
+pub mod drift;
+pub mod facets;
 pub mod filter;
 pub mod group;
 pub mod judge;
 pub mod model;
 pub mod noise;
+pub mod normal;
 pub mod prior;
 pub mod six_face;
 pub mod start;

@@ -95,13 +95,14 @@ impl Session<'_> {
                 Method::Gravity => reference::gravity(&tape, self.readings, &conditions, &estimate),
                 Method::TwoStep(variant) => {
                     let found = two_step::estimate::<f32, _, _>(&tape, &conditions, variant);
-                    Some(found.map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })?.calibration)
+                    let found = found.map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })?;
+                    Some((found.calibration, estimate.covariance))
                 }
             };
-            estimate.calibration = found.ok_or(Reason::Arithmetic { place: "reference" })?;
+            (estimate.calibration, estimate.covariance) = found.ok_or(Reason::Arithmetic { place: "reference" })?;
             Ok(estimate)
         });
-        let covariance = estimate.as_ref().ok().filter(|_| method == Method::Device).map(|e| e.covariance);
+        let covariance = estimate.as_ref().ok().filter(|_| !matches!(method, Method::TwoStep(_))).map(|e| e.covariance);
         let mut outcome = self.judged(&tape, estimate);
         outcome.covariance = covariance;
         if let Some(full_s) = full_s {

@@ -13,6 +13,7 @@ use super::start;
 use super::state::Block;
 use super::sums::{Excess, SegmentNoise};
 use super::walk::Walk;
+use super::walk::still::EARTH_SIGMA;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
 use crate::order::median;
@@ -98,6 +99,8 @@ pub struct Estimator<const S: usize> {
     passes: u32,
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
+    /// It has certainly drifted.
+    slope_certain: bool,
 }
 
 /// Where a run stands.
@@ -117,7 +120,7 @@ impl<const S: usize> Estimator<S> {
         let start = start::nominal(tape, conditions.gravity_mps2);
         let mut walk = Walk::new(start, conditions.gravity_mps2);
         walk.restart(start, prior::prior(&conditions, &start, &start));
-        Self { conditions, noise, start, walk, passes: 0, bias_wanders: false }
+        Self { conditions, noise, start, walk, passes: 0, bias_wanders: false, slope_certain: false }
     }
 
     /// Walks up to `records` further.
@@ -138,12 +141,15 @@ impl<const S: usize> Estimator<S> {
             }
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
         }
-        self.adapt();
+        self.adapt(tape);
         let mut prior = prior::prior(&self.conditions, &self.start, &nominal);
         if self.passes >= 2 {
             prior::narrow(&mut prior, &self.walk.filter);
         }
+        let plated = self.walk.facets.agree_or_not();
         self.walk.restart(nominal, prior);
+        self.walk.plated = plated;
+        self.walk.coarse = self.passes < 2;
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
     }
 
@@ -163,11 +169,15 @@ impl<const S: usize> Estimator<S> {
     }
 
     /// Noise as this pass's innovations show it; the first passes are too far from the truth to tell.
-    fn adapt(&mut self) {
-        if self.passes < SETTLED || !self.walk.adapting {
+    fn adapt<const R: usize>(&mut self, tape: &Tape<R, S>) {
+        if !self.walk.adapting {
             return;
         }
         let before = self.noise;
+        self.straighten(tape);
+        if self.passes < SETTLED {
+            return;
+        }
         let sums = self.walk.sums;
         let probable = sums.rate_walk.value().is_some_and(|(value, sigma)| value > SIGNIFICANT * sigma);
         self.bias_wanders = probable || self.noise.has_bias_walk();
@@ -180,16 +190,32 @@ impl<const S: usize> Estimator<S> {
         if let Some((excess, _)) = sums.pivot.value() {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
-        if let Some(excess) = walk_excess(&sums.facet, self.noise.crookedness_rad().is_some()) {
-            let sigma = self.noise.facet_sigma_rad.unwrap_or_default();
-            self.noise.set_facet_variance(sigma * sigma + excess);
-        }
-        if let Some((excess, sigma)) = sums.stop.value() {
-            let variance = self.noise.stop_sigma_rad * self.noise.stop_sigma_rad;
-            self.noise.set_stop_variance(variance + excess, sigma, self.conditions.stops);
-        }
+        self.settle_stops();
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
+    }
+
+    /// What other noise would otherwise be blamed for: a bias that drifts, a box that is not square.
+    fn straighten<const R: usize>(&mut self, tape: &Tape<R, S>) {
+        if let (Some(slope), [first, .., last]) =
+            (self.walk.drift.slope(self.noise.rate_density, EARTH_SIGMA), tape.segments())
+        {
+            self.slope_certain = slope.certain;
+            self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
+        }
+        self.noise.set_facet_variance(self.walk.facets.variance());
+    }
+
+    fn settle_stops(&mut self) {
+        let walk = &mut self.walk;
+        walk.closures.end_visit(self.noise.stop_sigma_rad * self.noise.stop_sigma_rad);
+        let scales = core::array::from_fn(|axis| {
+            let index = Block::GyroCorrection.start() + 4 * axis;
+            (walk.filter.state()[index], walk.filter.covariance()[(index, index)])
+        });
+        if let Some(variance) = walk.closures.variance(self.conditions.stops, &scales) {
+            self.noise.stop_sigma_rad = libm::sqrtf(variance);
+        }
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
@@ -233,10 +259,13 @@ impl<const S: usize> Estimator<S> {
             }
         };
         let mut gyroscope = triad(&nominal.gyro, 12);
-        if self.bias_wanders {
-            // The filter's bias is the last; the session's is the mean, and its sigma tells how far it wandered.
+        if self.bias_wanders || self.slope_certain {
+            // The session's bias is its mean, and the sigma that is said of it tells how far it wandered.
             let (mean, spread) = start::resting_rate(tape);
-            gyroscope.triad.bias = mean;
+            if self.bias_wanders {
+                // The filter's is the last. What drifts straight it has at the session's middle.
+                gyroscope.triad.bias = mean;
+            }
             gyroscope.bias_sigma = gyroscope.bias_sigma.zip_map(&spread, libm::hypotf);
         }
         Estimate {

@@ -178,6 +178,8 @@ impl Filter {
             innovation.value -= value * self.state[index];
             innovation.variance += value * column[index];
         }
+        // Rounding may take a spent variance below nothing; what the reading itself brings always remains.
+        innovation.variance = innovation.variance.max(variance);
         let step = innovation.value / innovation.variance;
         let root = 1.0 / libm::sqrtf(innovation.variance);
         let column = column.as_mut_slice();

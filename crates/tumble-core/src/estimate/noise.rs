@@ -1,7 +1,10 @@
 //! What noise the session shows: from the scatter of its own rests first, from innovations later.
 
 use heapless::Vec;
+use nalgebra::Vector3;
 
+use super::drift::Slope;
+use super::facets::SQUARE;
 use crate::DEGREE_RAD;
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
@@ -11,29 +14,20 @@ use crate::tape::{Kind, Segment, Tape};
 pub const SHEET_RATE_DENSITY: f32 = 0.01 * DEGREE_RAD * core::f32::consts::FRAC_1_SQRT_2;
 /// MPU-9250 sheet: 300 µg/√Hz, likewise.
 pub const SHEET_FORCE_DENSITY: f32 = 300e-6 * crate::STANDARD_GRAVITY_MPS2 * core::f32::consts::FRAC_1_SQRT_2;
-/// A stop against a fence is never believed better than this, rad (5 millidegrees: 5 µm on a 6 cm box).
-const FENCE_FLOOR: f32 = 0.005 * DEGREE_RAD;
-/// A person who stops by eye: 2° (sim, `design.md` §2), never believed better than a quarter of a degree.
+/// A person who stops by eye (sim, `design.md` §2), before its closures are seen.
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
-const BY_HAND_FLOOR: f32 = 0.25 * DEGREE_RAD;
-/// How many stops the expectation is worth.
-const STOPS_EXPECTED: f32 = 3.0;
 /// What a stop against a fence is taken for before its innovations are seen.
 const FENCED: f32 = 0.05 * DEGREE_RAD;
-/// A face of a box that its owner calls square, rad: 1 µm on 5 cm.
-const SQUARE: f32 = 20e-6;
 /// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least and most
 /// that is believed of it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
 const PIVOT: f32 = 5e-3;
 const PIVOT_FLOOR: f32 = 50e-6;
 const PIVOT_CAP: f32 = 0.05;
-/// No box is further from square than this, rad (3°).
-const CROOKED_CAP: f32 = 0.05;
-/// A bias wanders at least 1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
-const WALK_FLOOR: f32 = 1e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
+/// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
+const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
 /// Likewise 10 µg in 100 s and 3 mg, (m/s²)²/s.
-const FORCE_WALK_FLOOR: f32 = 1e-10;
+const FORCE_WALK_FLOOR: f32 = 1e-11;
 const FORCE_WALK_CAP: f32 = 1e-5;
 
 /// Densities and sigmas in force.
@@ -45,6 +39,10 @@ pub struct Noise {
     pub force_density: f32,
     /// Growth of a gyroscope bias's variance, (rad/s)²/s.
     pub bias_walk: f32,
+    /// Straight part of the gyroscope bias's drift, (rad/s)/s.
+    pub bias_slope: Vector3<f32>,
+    /// What is added to `bias_walk` because the slope is not exactly known, (rad/s)²/s.
+    pub slope_walk: f32,
     /// Growth of an accelerometer bias's variance, (m/s²)²/s.
     pub force_walk: f32,
     /// Factor on `rate_density` while it moves.
@@ -85,6 +83,8 @@ impl Noise {
             rate_density: bounded(pooled(&mut rate), SHEET_RATE_DENSITY),
             force_density: bounded(pooled(&mut force), SHEET_FORCE_DENSITY),
             bias_walk: WALK_FLOOR,
+            bias_slope: Vector3::zeros(),
+            slope_walk: 0.0,
             force_walk: FORCE_WALK_FLOOR,
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
@@ -98,7 +98,14 @@ impl Noise {
     pub fn is_near(&self, other: &Self, share: f32) -> bool {
         let parts = |noise: &Self| {
             let facet = noise.facet_sigma_rad.unwrap_or_default();
-            [noise.bias_walk, noise.force_walk, noise.motion_scale, noise.stop_sigma_rad, noise.pivot_sigma_m, facet]
+            [
+                noise.total_bias_walk(),
+                noise.force_walk,
+                noise.motion_scale,
+                noise.stop_sigma_rad,
+                noise.pivot_sigma_m,
+                facet,
+            ]
         };
         parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))
     }
@@ -128,10 +135,10 @@ impl Noise {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
-    /// The box is not as square as its owner said: its faces' variance by the plates' innovations, rad².
-    pub fn set_facet_variance(&mut self, found: f32) {
+    /// The box is not as square as its owner said, or it is.
+    pub fn set_facet_variance(&mut self, found: Option<f32>) {
         if let Some(sigma) = &mut self.facet_sigma_rad {
-            *sigma = libm::sqrtf(found.max(0.0)).clamp(SQUARE, CROOKED_CAP);
+            *sigma = found.map_or(SQUARE, libm::sqrtf);
         }
     }
 
@@ -140,19 +147,16 @@ impl Noise {
         self.facet_sigma_rad.filter(|sigma| *sigma > SQUARE)
     }
 
-    /// Stop variance from the closures' innovations: `found` with its own sigma, weighed against the expectation, which
-    /// counts as `STOPS_EXPECTED` stops seen (a scaled inverse χ² prior). A dozen closures alone would often deny that stops
-    /// err at all.
-    pub fn set_stop_variance(&mut self, found: f32, found_sigma: f32, stops: TurnStops) {
-        let (floor, expected) = match stops {
-            TurnStops::Fenced => (FENCE_FLOOR, FENCED),
-            TurnStops::ByHand => (BY_HAND_FLOOR, BY_HAND),
-        };
-        let expected = expected * expected;
-        let weight = 1.0 / (found_sigma * found_sigma);
-        let prior = STOPS_EXPECTED / (2.0 * expected * expected);
-        let variance = (weight * found + prior * expected) / (weight + prior);
-        self.stop_sigma_rad = libm::sqrtf(variance.max(0.0)).clamp(floor, 3.0 * BY_HAND);
+    /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean
+    /// square of δs² T²/12; a walk about its own mean has q T/6. Thus a walk of δs² T/2 stands for it.
+    pub fn set_slope(&mut self, slope: &Slope, session_s: f32) {
+        self.bias_slope = slope.rate;
+        self.slope_walk = 0.125 * slope.variance * session_s;
+    }
+
+    /// All that a gyroscope bias's variance grows by, (rad/s)²/s.
+    pub fn total_bias_walk(&self) -> f32 {
+        self.bias_walk + self.slope_walk
     }
 }
 

@@ -23,12 +23,8 @@ pub struct Sums {
     pub force_walk: Excess,
     /// First rates of rests: likewise.
     pub rate_walk: Excess,
-    /// Closures: a stop's variance.
-    pub stop: Excess,
     /// Turns: the pivot's variance.
     pub pivot: Excess,
-    /// Plates: a face's variance.
-    pub facet: Excess,
     /// Closure residuals, rad² and count.
     pub closed: (f32, f32),
 }

@@ -1,10 +1,13 @@
 //! One pass of the linearised filter over the tape, a record at a time, so that a microcontroller can do other things.
 
-mod still;
+pub(super) mod still;
 
 use heapless::Vec;
 use nalgebra::{Matrix3, UnitQuaternion};
 
+use super::closures::Closures;
+use super::drift::Drift;
+use super::facets::Facets;
 use super::filter::{Filter, Innovation};
 use super::group::{Group, TurnNoise};
 use super::model::{self, Nominal};
@@ -28,9 +31,23 @@ pub struct Walk<const S: usize> {
     pub noise: Vec<SegmentNoise, S>,
     /// Over the pass.
     pub sums: Sums,
+    /// What stops, faces and rates at rest say of their variances and of the bias's drift.
+    pub closures: Closures,
+    /// See [`Self::closures`].
+    pub facets: Facets,
+    /// See [`Self::closures`].
+    pub drift: Drift,
     /// Do turns still learn their own noise?
     pub adapting: bool,
+    /// Are there faces enough for the plate to be believed?
+    pub plated: bool,
+    /// Is the prior still wide?
+    pub coarse: bool,
     nominal: Nominal,
+    /// The same with the bias as it is now.
+    now: Nominal,
+    /// Time since the session's middle, s.
+    time_s: f32,
     gravity: f32,
     segment: usize,
     record: usize,
@@ -53,8 +70,9 @@ pub struct Walk<const S: usize> {
 struct Visit {
     face: Face,
     first_stop: UnitQuaternion<f32>,
-    /// Rotation since the last stop that counted, rad.
+    /// Rotation since the last stop that counted, rad, and the gyroscope's variance in it, rad².
     turned_rad: f32,
+    noise: f32,
 }
 
 impl<const S: usize> Walk<S> {
@@ -64,8 +82,15 @@ impl<const S: usize> Walk<S> {
             filter: Filter::default(),
             noise: Vec::new(),
             sums: Sums::default(),
+            closures: Closures::default(),
+            facets: Facets::default(),
+            drift: Drift::default(),
             adapting: true,
+            plated: true,
+            coarse: true,
             nominal,
+            now: nominal,
+            time_s: 0.0,
             gravity,
             segment: 0,
             record: 0,
@@ -127,6 +152,8 @@ impl<const S: usize> Walk<S> {
             // As many as the tape has segments: there is room.
             let _ = self.noise.push(SegmentNoise { force_scale: scale, rate_scale: 1.0, hinge_nis: f32::NAN });
         }
+        let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
+        self.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
         self.group = Group::default();
         self.turn_noise = TurnNoise::default();
         if segment.is_usable_still() {
@@ -137,13 +164,13 @@ impl<const S: usize> Walk<S> {
         if matches!(segment.kind, Kind::OnTable { .. }) {
             (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
         } else {
-            self.visit = None;
+            self.end_visit(noise);
         }
         self.move_s = 0.0;
         if matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap) {
             self.aligned = false;
             self.hinge = None;
-            self.visit = None;
+            self.end_visit(noise);
         }
     }
 
@@ -158,7 +185,9 @@ impl<const S: usize> Walk<S> {
         if !self.aligned {
             return;
         }
-        self.filter.diffuse(Block::GyroBias, noise.bias_walk * record.dt_s);
+        self.now.gyro.bias = self.nominal.gyro.bias + noise.bias_slope * (self.time_s + 0.5 * record.dt_s);
+        self.time_s += record.dt_s;
+        self.filter.diffuse(Block::GyroBias, noise.total_bias_walk() * record.dt_s);
         self.filter.diffuse(Block::AccelBias, noise.force_walk * record.dt_s);
         if segment.is_usable_still() {
             self.rest(segment, record, noise);
@@ -175,18 +204,18 @@ impl<const S: usize> Walk<S> {
 
     /// Carries the nominal attitude over a record and adds the record to the group.
     fn turn(&mut self, record: &Record, lever: Option<&Matrix3<f32>>) {
-        let rotation = self.nominal.rotation(record);
+        let rotation = self.now.rotation(record);
         let middle = self.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
-        let gravity = lever.map(|lever| self.nominal.gravity(record, &to_n, self.gravity, lever));
-        self.group.take(&self.nominal.drive(record, &to_n), gravity.as_ref(), record.dt_s);
+        let gravity = lever.map(|lever| self.now.gravity(record, &to_n, self.gravity, lever));
+        self.group.take(&self.now.drive(record, &to_n), gravity.as_ref(), record.dt_s);
         let earth = UnitQuaternion::from_scaled_axis(self.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.attitude = UnitQuaternion::new_normalize(next.into_inner());
     }
 
     fn lever<const R: usize>(&self, tape: &Tape<R, S>, index: usize, record: &Record) -> Matrix3<f32> {
-        let rate = |record: &Record| self.nominal.rotation(record) / record.dt_s;
+        let rate = |record: &Record| self.now.rotation(record) / record.dt_s;
         let before = index.checked_sub(1).and_then(|index| tape.record(index)).unwrap_or(*record);
         let after = tape.record(index + 1).unwrap_or(*record);
         let span = 0.5 * (before.dt_s + after.dt_s) + record.dt_s;
@@ -226,6 +255,8 @@ impl<const S: usize> Walk<S> {
             }
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
+                visit.noise +=
+                    noise.rate_density * noise.motion_scale * self.noise[self.segment].rate_scale * self.move_s;
             }
         }
     }

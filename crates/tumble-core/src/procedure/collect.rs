@@ -5,10 +5,13 @@ use super::{Coverage, Direction, Setup};
 use crate::face::Face;
 use crate::message::{Accepted, Ask, Message, Note, Progress, Refused, RefusedTurn, Unrest};
 
-/// A face's still, s. White noise of 300 µg/√Hz (sheet) averages over 3 s to 300/√(2·3) = 122 µg, so that six of them carry
-/// the accelerometer's parameters to some 50 µg; the turns' own rests, added later, take it below. Shorter costs accuracy,
-/// longer costs patience: the 1/f floor of some 100 µg is near.
-pub const STILL_S: f32 = 3.0;
+/// A face's still, s. It must give gravity's direction: white noise of 300 µg/√Hz (sheet) averages over 2 s to
+/// 300/√(2·2) = 150 µg, where the 1/f floor of some 100 µg makes a longer wait ever less worth. A face of a complete session
+/// rests two or three times, so that six of them still carry the accelerometer's offset to 20 µg: against 3 s the bound
+/// of a session with turns both ways grows from 18.5 to 19.6 µg, that of the gyroscope's non-orthogonality from 53 to
+/// 55 µrad (`docs/method.md` §2). As the block at either edge counts as motion (up to 0.75 s together), this is what a rest of
+/// 3 s by the clock surely holds.
+pub const STILL_S: f32 = 2.0;
 
 /// The rest behind a turn, s. What it must tell is the heading rate at rest (0.01 °/s/√Hz over 2 s: 5 mdps, 0.05° in a turn of
 /// 10 s before the session's other rests improve on it tenfold) and the tilt (150 µg: 0.009°).

@@ -73,6 +73,9 @@ struct LimitsArguments {
     /// Leave out the table of imperfections
     #[arg(long)]
     nominal_only: bool,
+    /// Run the references (batch, gravity) on the same sessions as well
+    #[arg(long)]
+    references: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
@@ -112,7 +115,12 @@ fn limits(arguments: &LimitsArguments) -> Result<(), Refusal> {
 }
 
 fn run_all(arguments: &LimitsArguments, scenarios: &[Scenario], navigate: bool) -> Vec<ScenarioSummary> {
-    let effort = Effort { runs: arguments.runs as usize, threads: arguments.threads as usize, seed: arguments.seed };
+    let effort = Effort {
+        runs: arguments.runs as usize,
+        threads: arguments.threads as usize,
+        seed: arguments.seed,
+        references: arguments.references,
+    };
     let total = (scenarios.len() * effort.runs) as f32;
     let mut progress = Progress::new();
     let mut summaries = Vec::with_capacity(scenarios.len());
@@ -137,7 +145,12 @@ fn recordings(arguments: &RecordingsArguments) -> Result<(), Refusal> {
 }
 
 fn paper(arguments: &PaperArguments) -> Result<(), Refusal> {
-    let effort = Effort { runs: arguments.runs as usize, threads: arguments.threads as usize, seed: arguments.seed };
+    let effort = Effort {
+        runs: arguments.runs as usize,
+        threads: arguments.threads as usize,
+        seed: arguments.seed,
+        references: false,
+    };
     let mut progress = Progress::new();
     let runs = paper_study::run(&effort, &mut |done| progress.share("runs", done as f32 / arguments.runs as f32))?;
     drop(progress);

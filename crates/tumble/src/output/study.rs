@@ -32,6 +32,9 @@ pub fn limits(nominal: &[ScenarioSummary], imperfect: &[ScenarioSummary]) -> Str
     if !imperfect.is_empty() {
         let _ = short(&mut text, imperfect);
     }
+    text.push_str(
+        "bound+: for one who knows the lever arm; * Cramér–Rao sigma published in design.md, of another protocol\n",
+    );
     text
 }
 
@@ -41,14 +44,14 @@ fn full(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
     scenario.failures.iter().try_for_each(|failure| writeln!(text, "  failed: {failure}"))?;
     writeln!(
         text,
-        "  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>9} {:>10}",
-        "", "unit", "mean", "std", "rms", "sigma", "bound", "ratio", "2 sigma", "design.md*"
+        "  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>9} {:>10}",
+        "", "unit", "mean", "std", "rms", "sigma", "bound", "bound+", "ratio", "2 sigma", "design.md*"
     )?;
     for group in &scenario.groups {
         let published = published(scenario, group.group).map_or_else(String::new, |value| format!("{value:.1}"));
         writeln!(
             text,
-            "  {:<24} {:>5} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>6.2} {:>7.1} % {published:>10}",
+            "  {:<24} {:>5} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>6.2} {:>7.1} % {published:>10}",
             group.group,
             group.unit,
             group.mean,
@@ -56,13 +59,27 @@ fn full(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
             group.rms,
             group.sigma,
             group.bound,
+            group.bound_lever_known,
             group.ratio,
             100.0 * group.within_2_sigma
         )?;
     }
+    estimators(text, scenario)?;
     consistency(text, scenario)?;
     navigation(text, scenario)?;
     writeln!(text)
+}
+
+fn estimators(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
+    for one in &scenario.estimators {
+        let ((scale, scale_std), (cross, cross_std)) = (one.scale_ppm, one.cross_urad);
+        writeln!(
+            text,
+            "  {:<10} scale mean {scale:.1}, std {scale_std:.1} ppm; K mean {cross:.1}, std {cross_std:.1} urad; {} runs",
+            one.estimator, one.runs
+        )?;
+    }
+    Ok(())
 }
 
 fn consistency(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
@@ -107,7 +124,7 @@ fn short(text: &mut String, scenarios: &[ScenarioSummary]) -> fmt::Result {
         let nees = scenario.nees.as_ref().map_or(f64::NAN, |nees| nees.mean);
         writeln!(text, " {nees:>7.2} {:>5}/{}", scenario.accepted, scenario.runs + scenario.failures.len())?;
     }
-    writeln!(text, "* Cramér–Rao sigma published in design.md, of another protocol")
+    Ok(())
 }
 
 /// `tumble study recordings`.
@@ -133,8 +150,9 @@ fn side_by_side(text: &mut String, report: &Report) -> fmt::Result {
     if let Some(agreement) = &report.agreement {
         writeln!(
             text,
-            "two chips on one board, {} samples of {:.1} deg/s rms: they differ by {:.3} deg/s raw, {:.3} compensated",
-            agreement.samples, agreement.rate_dps, agreement.raw_dps, agreement.compensated_dps
+            "two chips on one board, {} samples of {:.1} deg/s rms: they differ by {:.3} deg/s raw, {:.3} compensated, \
+             {:.3} whatever the calibration",
+            agreement.samples, agreement.rate_dps, agreement.raw_dps, agreement.compensated_dps, agreement.linear_dps
         )?;
     }
     report.missing.iter().try_for_each(|missing| writeln!(text, "not read: {missing}"))

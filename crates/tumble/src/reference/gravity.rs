@@ -5,11 +5,11 @@
 //! 2. Gyroscope, nine numbers, its bias being the mean rate over rests: the upward direction of one rest, carried by the
 //!    gyroscope through the move, is that of the next.
 
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 use tumble_core::estimate::{Conditions, Noise};
 
 use super::data::{Stretch, turned};
-use super::solve::{Block, Solution, minimise};
+use super::solve::{Block, minimise};
 use super::{ACCEL_BIAS_SIGMA, CORRECTION_SIGMA};
 
 /// `A` by rows, its six elements, then `a`.
@@ -26,6 +26,22 @@ pub struct Fitted {
     pub bias_sigma: Vector3<f64>,
     /// Of the correction; zero where the frame fixes it.
     pub correction_sigma: Matrix3<f64>,
+    /// Of all twelve, bias first.
+    pub covariance: SMatrix<f64, 12, 12>,
+}
+
+impl Fitted {
+    /// `covariance` of twelve numbers, the bias first.
+    pub fn new(bias: Vector3<f64>, correction: Matrix3<f64>, covariance: SMatrix<f64, 12, 12>) -> Self {
+        let sigma = |index: usize| covariance[(index, index)].max(0.0).sqrt();
+        Self {
+            bias,
+            correction,
+            bias_sigma: Vector3::from_fn(|i, _| sigma(i)),
+            correction_sigma: Matrix3::from_fn(|i, j| sigma(3 + 3 * i + j)),
+            covariance,
+        }
+    }
 }
 
 /// Both triads in the accelerometer's frame; none without rests or with a singular fit.
@@ -51,11 +67,13 @@ fn accelerometer(stretches: &[Stretch], conditions: &Conditions, noise: &Noise) 
     // Priors keep the solver in bounds where the rests do not.
     blocks.extend((0..9).map(|unknown| Block::prior(unknown, start[unknown], sigma(unknown))));
     let solution = minimise(&blocks, start, &[1e-6; 9]);
-    let sigmas = sigmas(&solution)?;
+    let found = solution.covariance.as_ref()?;
     let (correction, bias) = lower(&solution.x);
-    let mut correction_sigma = Matrix3::zeros();
-    LOWER.iter().zip(&sigmas).for_each(|(&at, sigma)| correction_sigma[at] = *sigma);
-    Some(Fitted { bias, correction, bias_sigma: Vector3::from_column_slice(&sigmas[6..9]), correction_sigma })
+    // Where each unknown stands among the twelve.
+    let place = |unknown: usize| LOWER.get(unknown).map_or_else(|| unknown - 6, |&(i, j)| 3 + 3 * i + j);
+    let mut covariance = SMatrix::zeros();
+    (0..9).flat_map(|i| (0..9).map(move |j| (i, j))).for_each(|at| covariance[(place(at.0), place(at.1))] = found[at]);
+    Some(Fitted::new(bias, correction, covariance))
 }
 
 fn lower(x: &[f64]) -> (Matrix3<f64>, Vector3<f64>) {
@@ -80,14 +98,15 @@ fn gyroscope(stretches: &[Stretch], accel: &Fitted, noise: &Noise) -> Option<Fit
     let start: Vec<f64> = Matrix3::<f64>::identity().transpose().iter().copied().collect();
     blocks.extend((0..9).map(|unknown| Block::prior(unknown, start[unknown], CORRECTION_SIGMA)));
     let solution = minimise(&blocks, start, &[1e-6; 9]);
-    let sigmas = sigmas(&solution)?;
-    let bias_sigma = Vector3::repeat((f64::from(noise.rate_density) / time_s).sqrt());
-    Some(Fitted {
-        bias,
-        correction: Matrix3::from_row_slice(&solution.x),
-        bias_sigma,
-        correction_sigma: Matrix3::from_row_slice(&sigmas),
-    })
+    let found = solution.covariance.as_ref()?;
+    let own = f64::from(noise.rate_density) / time_s;
+    // The bias is taken for known in the fit, so that nothing is said of how the two go together.
+    let covariance = SMatrix::from_fn(|i, j| match (i < 3, j < 3) {
+        (true, true) => own * f64::from(u8::from(i == j)),
+        (false, false) => found[(i - 3, j - 3)],
+        _ => 0.0,
+    });
+    Some(Fitted::new(bias, Matrix3::from_row_slice(&solution.x), covariance))
 }
 
 /// `ΔRᵀ u₀ − u₁`, whitened by the gyroscope's noise over the move and the accelerometer's over both rests.
@@ -114,8 +133,4 @@ fn hinge<'a>(
         }
         ((rotation.inverse_transform_vector(&before) - after) / sigma).iter().copied().collect()
     })
-}
-
-fn sigmas(solution: &Solution) -> Option<Vec<f64>> {
-    solution.covariance.as_ref().map(|covariance| covariance.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect())
 }

@@ -5,15 +5,18 @@ pub mod data;
 pub mod gravity;
 pub mod solve;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use tumble_core::estimate::sums::SegmentNoise;
-use tumble_core::estimate::{Conditions, Estimate};
+use tumble_core::estimate::{Conditions, Estimate, PARAMETERS};
 
 use crate::calibrate::HostTape;
 use crate::recording::Reading;
 use data::Stretch;
 use gravity::Fitted;
+
+/// Of the 24 numbers, in the device's order.
+pub type Covariance = SMatrix<f32, PARAMETERS, PARAMETERS>;
 
 /// Prior of a correction's element, the device's (`docs/method.md`, "Priors and observability"), 1.
 pub const CORRECTION_SIGMA: f64 = 0.06;
@@ -27,11 +30,12 @@ pub fn batch(
     conditions: &Conditions,
     start: &Estimate,
     noise: &[SegmentNoise],
-) -> Option<Calibration> {
+) -> Option<(Calibration, Covariance)> {
     let stretches = data::stretches(tape.segments(), readings);
     let batch = batch::estimate(&stretches, conditions, start, noise)?;
     let fit = fit(&stretches, &batch.accel, conditions, &start.calibration.fit, batch.chi_square_per_dof as f32);
-    Some(calibration(&batch.accel, &batch.gyro, conditions.frame(), fit, tape.temperature_degc()))
+    let found = calibration(&batch.accel, &batch.gyro, conditions.frame(), fit, tape.temperature_degc());
+    Some((found, batch.covariance.cast()))
 }
 
 /// [`gravity::estimate`] likewise; it has no residuals that would be comparable with the others'.
@@ -40,11 +44,16 @@ pub fn gravity(
     readings: &[Reading],
     conditions: &Conditions,
     start: &Estimate,
-) -> Option<Calibration> {
+) -> Option<(Calibration, Covariance)> {
     let stretches = data::stretches(tape.segments(), readings);
     let (accel, gyro) = gravity::estimate(&stretches, conditions, &start.noise)?;
     let fit = fit(&stretches, &accel, conditions, &start.calibration.fit, f32::NAN);
-    Some(calibration(&accel, &gyro, Frame::Accelerometer, fit, tape.temperature_degc()))
+    let found = calibration(&accel, &gyro, Frame::Accelerometer, fit, tape.temperature_degc());
+    // The two fits follow each other: nothing is said of how their errors go together.
+    let mut covariance = Covariance::zeros();
+    covariance.fixed_view_mut::<12, 12>(0, 0).copy_from(&accel.covariance.cast());
+    covariance.fixed_view_mut::<12, 12>(12, 12).copy_from(&gyro.covariance.cast());
+    Some((found, covariance))
 }
 
 fn calibration(accel: &Fitted, gyro: &Fitted, frame: Frame, fit: Fit, temperature_degc: f32) -> Calibration {

@@ -34,6 +34,8 @@ const TABLE: usize = 30;
 const EARTH: usize = 32;
 const FENCE: usize = 35;
 const STATES: usize = 36;
+/// A lever that nobody measured, m: the device's prior.
+const LEVER_SIGMA_M: f64 = 0.05;
 /// Steps of motion, s: 1.8° of a turn.
 const STEP_S: f64 = 0.05;
 /// Variance of what is exact, rad²: 0.1 µrad, which `f64` still resolves against a prior of 0.1 rad.
@@ -43,7 +45,18 @@ type Row = SVector<f64, STATES>;
 
 /// Covariance of the 24 parameters in the order of [`PARAMETERS`]; rows of what the frame fixes are zero.
 pub fn bound(config: &SchemeConfig, recording: &Recording, faces: BoxFaces) -> SMatrix<f64, PARAMETERS, PARAMETERS> {
+    bound_with_lever(config, recording, faces, LEVER_SIGMA_M)
+}
+
+/// The same where the lever is known to a sigma, m.
+pub fn bound_with_lever(
+    config: &SchemeConfig,
+    recording: &Recording,
+    faces: BoxFaces,
+    lever_sigma_m: f64,
+) -> SMatrix<f64, PARAMETERS, PARAMETERS> {
     let mut bound = Bound::new(config, recording, faces);
+    bound.covariance.fixed_view_mut::<3, 3>(LEVER, LEVER).fill_diagonal(lever_sigma_m * lever_sigma_m);
     for segment in recording.world.motion.segments() {
         bound.walk(segment);
     }
@@ -235,7 +248,7 @@ fn prior(square: bool) -> SMatrix<f64, STATES, STATES> {
         sigma[ACCEL + 3 * i + j] = if square || j <= i { CORRECTION_SIGMA } else { 0.0 };
     }
     sigma.fixed_rows_mut::<3>(ACCEL_BIAS).fill(ACCEL_BIAS_SIGMA);
-    sigma.fixed_rows_mut::<3>(LEVER).fill(0.05);
+    sigma.fixed_rows_mut::<3>(LEVER).fill(LEVER_SIGMA_M);
     sigma.fixed_rows_mut::<2>(TABLE).fill(0.1);
     sigma.fixed_rows_mut::<3>(EARTH).fill(5e-5);
     SMatrix::from_diagonal(&sigma.map(|sigma| sigma * sigma))

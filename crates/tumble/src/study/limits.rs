@@ -46,6 +46,8 @@ pub struct ScenarioSummary {
     pub failures: Vec<String>,
     /// Errors.
     pub groups: Vec<GroupSummary>,
+    /// Mean and standard deviation of scale and non-orthogonality by estimator.
+    pub estimators: Vec<summary::EstimatorSummary>,
     /// Are the covariances true? None if one is not positive definite.
     pub nees: Option<Nees>,
     /// Share of all parameters within two sigma.
@@ -78,6 +80,8 @@ pub struct Effort {
     pub threads: usize,
     /// First seed.
     pub seed: u64,
+    /// Batch and gravity as well: a second more a session.
+    pub references: bool,
 }
 
 impl Scenario {
@@ -139,7 +143,7 @@ impl Scenario {
     pub fn run(&self, effort: &Effort, navigate: bool, done: &mut (impl FnMut(usize) + Send)) -> ScenarioSummary {
         let work = |index: usize| -> Result<(Trial, Levels), TrialError> {
             let config = self.config(index, effort);
-            let trial = Trial::run(&config, self.faces)?;
+            let trial = Trial::run_with(&config, self.faces, effort.references)?;
             let levels = if navigate { navigated(&config, &trial)? } else { Vec::new() };
             Ok((trial, levels))
         };
@@ -165,6 +169,7 @@ impl Scenario {
             runs: trials.len(),
             accepted: trials.iter().filter(|trial| trial.accepted).count(),
             failures,
+            estimators: summary::estimators(trials),
             groups: Group::ALL.into_iter().map(|group| summary::group(trials, group)).collect(),
             nees: summary::nees(trials),
             within_2_sigma: summary::within_2_sigma(trials),

@@ -79,6 +79,9 @@ pub struct Agreement {
     pub raw_dps: f64,
     /// The same of compensated rates.
     pub compensated_dps: f64,
+    /// The same with the best 3×3 matrix instead of any calibration: what no calibration of this form can undercut, which is what
+    /// the chips' own sampling instants leave.
+    pub linear_dps: f64,
 }
 
 /// All of it.
@@ -211,7 +214,17 @@ fn agreement(a: &Loaded, b: &Loaded) -> Option<Agreement> {
         rate_dps: (square / compensated.len().max(1) as f64).sqrt().to_degrees(),
         raw_dps: difference(&pairs(&raw(&first), &raw(&second)))?.to_degrees(),
         compensated_dps: difference(&compensated)?.to_degrees(),
+        linear_dps: linear_difference(&compensated)?.to_degrees(),
     })
+}
+
+/// Rms of `a − T b` with the best matrix.
+fn linear_difference(pairs: &[(Vector3<f64>, Vector3<f64>)]) -> Option<f64> {
+    let across: Matrix3<f64> = pairs.iter().map(|(a, b)| a * b.transpose()).sum();
+    let own: Matrix3<f64> = pairs.iter().map(|(_, b)| b * b.transpose()).sum();
+    let best = across * own.try_inverse()?;
+    let sum: f64 = pairs.iter().map(|(a, b)| (a - best * b).norm_squared()).sum();
+    Some((sum / pairs.len().max(1) as f64).sqrt())
 }
 
 /// Rms of `a − R b` with the best rotation (Kabsch 1976): the chips' own frames need not be parallel.

@@ -82,6 +82,8 @@ pub struct GroupSummary {
     pub sigma: f64,
     /// Of the Cramér–Rao sigmas.
     pub bound: f64,
+    /// Of the bound for one who knows the lever arm.
+    pub bound_lever_known: f64,
     /// `rms / bound`.
     pub ratio: f64,
     /// Share of errors within two of the estimator's sigmas; 0.954 if these are true.
@@ -134,9 +136,53 @@ pub fn group(trials: &[Trial], group: Group) -> GroupSummary {
         rms: all,
         sigma: over(&|trial, i| trial.covariance[(i, i)].sqrt()),
         bound,
+        bound_lever_known: over(&|trial, i| trial.bound_lever_known[i]),
         ratio: all / bound,
         within_2_sigma: within.filter(|within| *within).count() as f64 / (count * indices.len().max(1) as f64),
     }
+}
+
+/// Gyroscope scale and non-orthogonality of one estimator over all trials, ppm and µrad: root mean squares over the
+/// parameters of their mean errors and of their standard deviations.
+#[derive(Clone, Debug, Serialize)]
+pub struct EstimatorSummary {
+    /// Which.
+    pub estimator: &'static str,
+    /// Sessions with numbers.
+    pub runs: usize,
+    /// Mean and standard deviation.
+    pub scale_ppm: (f64, f64),
+    /// Likewise.
+    pub cross_urad: (f64, f64),
+}
+
+/// The device and what else was asked for.
+pub fn estimators(trials: &[Trial]) -> Vec<EstimatorSummary> {
+    ["device", "batch", "gravity", "two-step"].into_iter().filter_map(|name| estimator(trials, name)).collect()
+}
+
+fn estimator(trials: &[Trial], name: &'static str) -> Option<EstimatorSummary> {
+    let error = |trial: &Trial| match name {
+        "device" => Some(trial.error),
+        _ => trial.others.iter().find(|other| other.0 == name).map(|other| other.1),
+    };
+    let errors: Vec<_> = trials.iter().filter_map(error).collect();
+    let count = errors.len() as f64;
+    let spread = |group: Group| {
+        let each = |index: usize| {
+            let mean = errors.iter().map(|error| error[index]).sum::<f64>() / count;
+            let square: f64 = errors.iter().map(|error| (error[index] - mean).powi(2)).sum();
+            (1e6 * mean, 1e6 * (square / (count - 1.0).max(1.0)).sqrt())
+        };
+        let all: Vec<_> = (0..PARAMETERS).filter(|&index| group.contains(index)).map(each).collect();
+        (rms(all.iter().map(|one| one.0)), rms(all.iter().map(|one| one.1)))
+    };
+    (!errors.is_empty()).then(|| EstimatorSummary {
+        estimator: name,
+        runs: errors.len(),
+        scale_ppm: spread(Group::GyroScale),
+        cross_urad: spread(Group::GyroCross),
+    })
 }
 
 fn within_two_sigma(trial: &Trial, index: usize) -> bool {

@@ -11,9 +11,12 @@ use tumble_sim::motion::Stops;
 use tumble_sim::sensor::FrameTruth;
 use tumble_sim::{Face, SchemeConfig, SimError};
 
-use super::bound::bound;
+use super::bound::{bound, bound_with_lever};
 use crate::calibrate::{Method, Session};
 use crate::recording::Reading;
+
+/// A lever measured to 10 µm is known.
+const KNOWN_LEVER_M: f64 = 1e-5;
 
 /// The 24 parameters.
 pub type Parameters = SVector<f64, PARAMETERS>;
@@ -43,6 +46,10 @@ pub struct Trial {
     pub covariance: SMatrix<f64, PARAMETERS, PARAMETERS>,
     /// Sigmas that no estimator can undercut; zero for what the frame fixes.
     pub bound: Parameters,
+    /// The same for one who knows the lever arm.
+    pub bound_lever_known: Parameters,
+    /// What other estimators erred by, each against the truth in its own frame.
+    pub others: Vec<(&'static str, Parameters)>,
     /// The estimate.
     pub calibration: Calibration,
     /// By the paper's two-step method, corrected; where a square box gives its frame.
@@ -61,6 +68,14 @@ impl Trial {
     /// # Errors
     /// If there are no numbers to compare.
     pub fn run(config: &SchemeConfig, faces: BoxFaces) -> Result<Self, TrialError> {
+        Self::run_with(config, faces, false)
+    }
+
+    /// The same; `references` adds gravity and batch to [`Self::others`].
+    ///
+    /// # Errors
+    /// If there are no numbers to compare.
+    pub fn run_with(config: &SchemeConfig, faces: BoxFaces, references: bool) -> Result<Self, TrialError> {
         let recording = config.record()?;
         let readings = readings(&recording.samples);
         let conditions = Conditions { stops: stops(config), faces, gravity_mps2: config.world.gravity_mps2 as f32 };
@@ -74,8 +89,11 @@ impl Trial {
             let reason = outcome.reasons.into_iter().next().unwrap_or_default();
             return Err(TrialError::NoEstimate { seed: config.world.seed, reason });
         };
-        let bound = bound(config, &recording, faces).diagonal().map(|variance| variance.max(0.0).sqrt());
+        let sigmas = |bound: SMatrix<f64, PARAMETERS, PARAMETERS>| bound.diagonal().map(|v| v.max(0.0).sqrt());
+        let bound_lever_known = sigmas(bound_with_lever(config, &recording, faces, KNOWN_LEVER_M));
+        let bound = sigmas(bound(config, &recording, faces));
         let truth = recording.truth;
+        let others = others(&session, &truth, two_step.as_ref(), references);
         let (truth, rotation_f_from_b) = match faces {
             BoxFaces::Square => (truth.in_box, Matrix3::identity()),
             BoxFaces::Unknown => (truth.in_accelerometer_frame, matrix(&truth.rotation_accelerometer_from_box)),
@@ -84,6 +102,8 @@ impl Trial {
             error: estimated(&calibration) - true_parameters(&truth),
             covariance: covariance.cast(),
             bound,
+            bound_lever_known,
+            others,
             calibration,
             two_step,
             accepted: outcome.verdict != Verdict::Rejected,
@@ -91,6 +111,23 @@ impl Trial {
             rotation_f_from_b,
         })
     }
+}
+
+/// Errors of the other estimators.
+fn others(
+    session: &Session,
+    truth: &tumble_sim::sensor::Truth,
+    two_step: Option<&Calibration>,
+    references: bool,
+) -> Vec<(&'static str, Parameters)> {
+    let own = if session.conditions.faces == BoxFaces::Square { &truth.in_box } else { &truth.in_accelerometer_frame };
+    let methods = [("batch", Method::Batch, own), ("gravity", Method::Gravity, &truth.in_accelerometer_frame)];
+    let found = methods.into_iter().filter(|_| references).filter_map(|(name, method, truth)| {
+        let calibration = session.run(method, &mut |_| {}).calibration?;
+        Some((name, estimated(&calibration) - true_parameters(truth)))
+    });
+    let two_step = two_step.map(|found| ("two-step", estimated(found) - true_parameters(&truth.in_box)));
+    found.chain(two_step).collect()
 }
 
 /// Simulated samples as the core takes them.

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::{Visit, Walk};
+use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
 use crate::estimate::noise::{self, Noise};
 use crate::estimate::state::Block;
@@ -10,10 +11,13 @@ use crate::face::Face;
 use crate::motion::path::WHOLE_TURN;
 use crate::tape::{Record, Segment, Tape};
 
-/// How well a face's contact with the table repeats, rad: 1 µm over 5 cm.
-const CONTACT_SIGMA: f32 = 20e-6;
+/// How well a face's contact with the table repeats, rad: 0.25 µm over 5 cm, below all that shows.
+const CONTACT_SIGMA: f32 = 5e-6;
+/// … and what it is taken for under the wide prior of the first passes: `f32` resolves a 6e-8th of a variance, and beside the
+/// prior's 0.06 that is 15 µrad.
+const COARSE_SIGMA: f32 = 100e-6;
 /// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
-const EARTH_SIGMA: f32 = 5e-5;
+pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 /// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
 const LEVEL_SIGMA: f32 = 0.1;
 
@@ -25,9 +29,14 @@ impl<const S: usize> Walk<S> {
             let own = noise::scatter(tape, segment).force / noise.force_density;
             self.noise[self.segment].force_scale = own.max(1.0);
         }
-        let scale = self.noise[self.segment].force_scale;
-        let variance = noise.force_density * scale / (segment.duration_s() * self.gravity * self.gravity);
+        let (scale, duration_s) = (self.noise[self.segment].force_scale, segment.duration_s());
+        let variance = noise.force_density * scale / (duration_s * self.gravity * self.gravity);
         self.level(&self.nominal.accel.compensate(&force), variance, noise);
+        if noise::is_solid(segment, noise.quiet_variance) {
+            let rate = crate::motion::segmenter::mean_rate(tape, first, end) - self.nominal.gyro.bias;
+            let to_b = self.attitude.to_rotation_matrix().into_inner().transpose();
+            self.drift.take(&rate, &to_b, self.time_s + 0.5 * duration_s, duration_s);
+        }
     }
 
     /// What a face on the table tells, after its gravity has narrowed the attitude: a plate is so sharp an observation
@@ -37,8 +46,14 @@ impl<const S: usize> Walk<S> {
             self.plate(face, noise);
             self.stop(face, noise);
         } else {
-            self.visit = None;
+            self.end_visit(noise);
         }
+    }
+
+    /// Its closures are counted.
+    pub(super) fn end_visit(&mut self, noise: &Noise) {
+        self.visit = None;
+        self.closures.end_visit(noise.stop_sigma_rad * noise.stop_sigma_rad);
     }
 
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
@@ -70,6 +85,7 @@ impl<const S: usize> Walk<S> {
         if self.chains > 1 {
             // The first still's heading is lost, and with it where the Earth's rotation points.
             self.nominal.earth_rad_s = Vector3::zeros();
+            self.facets = Facets::default();
         }
         for axis in 0..3 {
             self.filter.reset(Block::Earth, axis, -self.nominal.earth_rad_s[axis], EARTH_SIGMA);
@@ -81,16 +97,26 @@ impl<const S: usize> Walk<S> {
         let Some(sigma) = noise.facet_sigma_rad else { return };
         let axes = [(face.axis() + 1) % 3, (face.axis() + 2) % 3];
         let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+        let normal = self.attitude * face.normal();
+        if !self.facets.admits(&normal) {
+            return;
+        }
         if self.visit.is_none_or(|visit| visit.face != face) {
+            // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
+            let to_n = self.attitude.to_rotation_matrix().into_inner();
+            self.facets.take(&face.normal(), &normal, &to_n, self.level_variance);
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
         let plane = axes.map(|axis| self.attitude * unit(axis));
-        let variance = CONTACT_SIGMA * CONTACT_SIGMA;
-        let plate = model::plate(&(self.attitude * face.normal()), &plane);
+        let contact = if self.coarse { COARSE_SIGMA } else { CONTACT_SIGMA };
+        let variance = contact * contact;
+        if !self.plated {
+            return;
+        }
+        let plate = model::plate(&normal, &plane);
         for (axis, Observation { residual, row }) in plate.into_iter().enumerate() {
             if self.table_known {
-                let innovation = self.filter.observe(&row.negated().with(Block::Table, axis, 1.0), residual, variance);
-                self.sums.facet.take(&innovation, 1.0);
+                self.filter.observe(&row.negated().with(Block::Table, axis, 1.0), residual, variance);
             } else {
                 self.filter.copy_to(Block::Table, axis, &row, residual, variance);
             }
@@ -105,7 +131,10 @@ impl<const S: usize> Walk<S> {
             let turned = libm::fabsf(visit.turned_rad);
             let observation = model::fence(&self.attitude, &visit.first_stop, &normal);
             if turned > core::f32::consts::PI && libm::fabsf(observation.residual) < WHOLE_TURN {
+                let whole = libm::roundf(visit.turned_rad / core::f32::consts::TAU) * core::f32::consts::TAU;
+                let own = core::mem::take(&mut visit.noise);
                 visit.turned_rad = 0.0;
+                self.closures.take(face.axis(), -whole, observation.residual, own);
                 self.close(&observation, variance);
             }
             // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
@@ -113,14 +142,13 @@ impl<const S: usize> Walk<S> {
                 return;
             }
         }
+        self.end_visit(noise);
         self.filter.copy_to(Block::Fence, 0, &model::heading(&normal), 0.0, variance);
-        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0 });
+        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0 });
     }
 
     fn close(&mut self, observation: &Observation, variance: f32) {
-        let innovation = self.filter.observe(&observation.row, observation.residual, variance);
-        // The first stop's own error, within the fence state, is a stop's as much as this one's.
-        self.sums.stop.take(&innovation, 2.0);
+        self.filter.observe(&observation.row, observation.residual, variance);
         self.sums.closed.0 += observation.residual * observation.residual;
         self.sums.closed.1 += 1.0;
     }
@@ -134,7 +162,7 @@ impl<const S: usize> Walk<S> {
         let to_n = self.attitude.to_rotation_matrix().into_inner();
         let variance = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
-        let parts = self.nominal.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
+        let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         for axis in 0..3 {
             let Observation { residual, row } = parts.observation(axis, self.gravity, None);
             let innovation = self.filter.observe(&row, residual, variance);
@@ -154,7 +182,7 @@ impl<const S: usize> Walk<S> {
         let variance = noise.rate_density / record.dt_s;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
-        for Observation { residual, row } in self.nominal.rest_rate(record, to_b) {
+        for Observation { residual, row } in self.now.rest_rate(record, to_b) {
             let innovation = self.filter.observe(&row, residual, variance);
             if first && self.last_rest_us > 0 {
                 self.sums.rate_walk.take(&innovation, since);

@@ -112,7 +112,7 @@ fn redo_forgets_one_face_and_a_rest_on_it_counts_from_then_on() {
     assert_eq!(hands.procedure.coverage().missing(Scheme::Double), 15);
     hands.type_word("redo +y");
     assert!(matches!(hands.asks(), Some(Ask::Hold { face: Some(Face::PlusY), seconds }) if seconds == STILL_S));
-    hands.rest(2.5);
+    hands.rest(STILL_S - 0.5);
     assert!(!hands.procedure.coverage().held().contains(Face::PlusY));
     hands.rest(0.5);
     assert!(hands.procedure.coverage().held().contains(Face::PlusY));
@@ -123,7 +123,7 @@ fn redo_forgets_one_face_and_a_rest_on_it_counts_from_then_on() {
     hands.log.clear();
     hands.let_go(Some(Face::PlusY));
     hands.give(Input::Motion(MotionEvent::TurnClosed { face: Face::PlusY, angle_rad: 6.3 }));
-    hands.rest(2.0);
+    hands.rest(STILL_S - 0.5);
     assert!(!hands.procedure.coverage().has_turn(Face::PlusY, Direction::Ccw));
     assert_eq!((hands.accepted(), hands.refusals().len()), (0, 0));
 }

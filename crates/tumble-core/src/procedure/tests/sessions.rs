@@ -64,10 +64,10 @@ fn a_turn_before_the_still_counts_and_its_rest_serves_both() {
     hands.place(Face::PlusZ);
     hands.rest(1.0);
     hands.turn(360.0);
-    hands.rest(2.0);
-    assert_eq!(hands.accepted(), 1);
+    hands.rest(1.5);
+    assert_eq!(hands.accepted(), 0);
     assert!(matches!(hands.asks(), Some(Ask::Hold { .. })));
-    hands.rest(1.0);
+    hands.rest(0.5);
     assert_eq!(hands.accepted(), 2);
     assert_eq!(hands.asks(), ask_turn(Face::PlusZ, Direction::Cw));
 }
@@ -145,10 +145,10 @@ fn a_bump_costs_only_that_hold() {
     let mut hands = Hands::calibrating("calibrate");
     hands.do_face(Face::PlusZ);
     hands.place(Face::PlusX);
-    hands.rest(2.5);
+    hands.rest(STILL_S - 0.5);
     hands.log.clear();
     hands.move_for(0.5);
-    assert_eq!(hands.refusals(), [Refused::Hold { face: Face::PlusX, held_s: 2.5, needed_s: STILL_S }]);
+    assert_eq!(hands.refusals(), [Refused::Hold { face: Face::PlusX, held_s: STILL_S - 0.5, needed_s: STILL_S }]);
     assert!(matches!(hands.asks(), Some(Ask::Still { .. })));
     assert_eq!(hands.led(), Pattern::Waiting);
     hands.let_go(Some(Face::PlusX));

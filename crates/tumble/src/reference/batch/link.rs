@@ -49,7 +49,7 @@ fn leg<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, stretch: &'a Stretch,
     let own = setting.segments.get(stretch.number);
     let scale = f64::from(noise.motion_scale * own.map_or(1.0, |own| own.rate_scale));
     // A walking bias, taken as straight between two rests, bends by a Brownian bridge of area variance q T³/12.
-    let bridge = f64::from(noise.bias_walk) * duration_s * duration_s / 12.0;
+    let bridge = f64::from(noise.total_bias_walk()) * duration_s * duration_s / 12.0;
     let dt_s = stretch.duration_s / stretch.intervals.len() as f64;
     Leg {
         stretch,

@@ -12,10 +12,10 @@ mod link;
 mod unknowns;
 mod visits;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Frame};
 use tumble_core::estimate::sums::SegmentNoise;
-use tumble_core::estimate::{Conditions, Estimate, noise};
+use tumble_core::estimate::{Conditions, Estimate, PARAMETERS, noise};
 
 use super::data::Stretch;
 use super::gravity::Fitted;
@@ -37,6 +37,8 @@ pub struct Batch {
     pub accel: Fitted,
     /// rad/s.
     pub gyro: Fitted,
+    /// Of all 24, in the device's order.
+    pub covariance: SMatrix<f64, PARAMETERS, PARAMETERS>,
     /// Twice the cost over residuals less unknowns: 1 if noise is what the device took it for.
     pub chi_square_per_dof: f64,
 }
@@ -71,19 +73,35 @@ pub fn estimate(
     blocks.extend(unknowns.priors());
     let solution = minimise(&blocks, unknowns.x, &unknowns.steps);
     let covariance = solution.covariance?;
-    let sigma = |index: usize| covariance[(index, index)].max(0.0).sqrt();
-    let fitted = |correction: usize, bias: usize| Fitted {
-        bias: Vector3::from_column_slice(&solution.x[bias..bias + 3]),
-        correction: Matrix3::from_row_slice(&solution.x[correction..correction + 9]),
-        bias_sigma: Vector3::from_fn(|i, _| sigma(bias + i)),
-        correction_sigma: Matrix3::from_fn(|i, j| sigma(correction + 3 * i + j)),
+    let order = |correction: usize, bias: usize| (bias..bias + 3).chain(correction..correction + 9);
+    let (accel, gyro) = (order(ACCEL, last.force_bias()), order(GYRO, last.rate_bias()));
+    let order: Vec<usize> = accel.chain(gyro).collect();
+    let covariance: SMatrix<f64, PARAMETERS, PARAMETERS> = SMatrix::from_fn(|i, j| covariance[(order[i], order[j])]);
+    let fitted = |correction: usize, bias: usize, first: usize| {
+        let own = covariance.fixed_view::<12, 12>(first, first).into_owned();
+        let bias = Vector3::from_column_slice(&solution.x[bias..bias + 3]);
+        Fitted::new(bias, Matrix3::from_row_slice(&solution.x[correction..correction + 9]), own)
     };
+    let mut gyro = fitted(GYRO, last.rate_bias(), 12);
+    // The last rest's; the session's is that of its middle.
+    gyro.bias -= device.noise.bias_slope.cast::<f64>() * since_middle_s(stretches, last);
     let dof = solution.residuals.saturating_sub(solution.x.len()).max(1);
     Some(Batch {
-        accel: fitted(ACCEL, last.force_bias()),
-        gyro: fitted(GYRO, last.rate_bias()),
+        accel: fitted(ACCEL, last.force_bias(), 0),
+        gyro,
+        covariance,
         chi_square_per_dof: 2.0 * solution.cost / dof as f64,
     })
+}
+
+/// From the session's middle to a rest's, s.
+fn since_middle_s(stretches: &[Stretch], rest: Rest) -> f64 {
+    let middle_us = |first: &Stretch, last: &Stretch| 0.5 * (first.segment.start_us + last.segment.end_us) as f64;
+    let own = &stretches[rest.stretch];
+    stretches
+        .first()
+        .zip(stretches.last())
+        .map_or(0.0, |(first, last)| 1e-6 * (middle_us(own, own) - middle_us(first, last)))
 }
 
 fn priors<'a>(unknowns: &Unknowns, start: &Calibration, rests: &[Rest]) -> Vec<Block<'a>> {
@@ -140,13 +158,13 @@ fn walk<'a>(setting: &Setting<'a>, from: Rest, to: Rest) -> Vec<Block<'a>> {
     let middle_s = |rest: Rest| 0.5e-6 * (segment(rest).start_us + segment(rest).end_us) as f64;
     let time_s = middle_s(to) - middle_s(from);
     let biases = [
-        (from.rate_bias(), to.rate_bias(), setting.noise.bias_walk),
-        (from.force_bias(), to.force_bias(), setting.noise.force_walk),
+        (from.rate_bias(), to.rate_bias(), setting.noise.total_bias_walk(), setting.noise.bias_slope.cast::<f64>()),
+        (from.force_bias(), to.force_bias(), setting.noise.force_walk, Vector3::zeros()),
     ];
-    let block = |(from, to, density): (usize, usize, f32)| {
+    let block = |(from, to, density, slope): (usize, usize, f32, Vector3<f64>)| {
         let sigma = (f64::from(density) * time_s).sqrt();
         Block::new((from..from + 3).chain(to..to + 3), move |x| {
-            (0..3).map(|axis| (x[to + axis] - x[from + axis]) / sigma).collect()
+            (0..3).map(|axis| (x[to + axis] - x[from + axis] - slope[axis] * time_s) / sigma).collect()
         })
     };
     biases.into_iter().map(block).collect()

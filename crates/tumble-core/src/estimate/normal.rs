@@ -1,0 +1,100 @@
+//! Normal equations with nuisance unknowns eliminated: what is left says of the rest what the data say when these are free.
+
+/// Sums of `weight · row · rowᵀ`. The last column is what was observed, so that the last diagonal element, once all unknowns
+/// are eliminated, is the weighted sum of squared residuals.
+#[derive(Clone, Copy, Debug)]
+pub struct Normal<const N: usize> {
+    sums: [[f32; N]; N],
+}
+
+impl<const N: usize> Default for Normal<N> {
+    fn default() -> Self {
+        Self { sums: [[0.0; N]; N] }
+    }
+}
+
+impl<const N: usize> Normal<N> {
+    /// Takes an observation in: its coefficients, then its value.
+    pub fn take(&mut self, row: &[f32; N], weight: f32) {
+        for (sums, left) in self.sums.iter_mut().zip(row) {
+            for (sum, right) in sums.iter_mut().zip(row) {
+                *sum += weight * left * right;
+            }
+        }
+    }
+
+    /// What is known of an unknown before: zero with this sigma.
+    pub fn expect(&mut self, unknown: usize, sigma: f32) {
+        self.sums[unknown][unknown] += 1.0 / (sigma * sigma);
+    }
+
+    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all.
+    pub fn eliminate(&mut self, count: usize) -> usize {
+        let mut rank = 0;
+        let own: [f32; N] = core::array::from_fn(|index| self.sums[index][index]);
+        for pivot in 0..count {
+            let row = self.sums[pivot];
+            // What elimination left of a pivot below this is rounding.
+            if row[pivot] <= 1e-5 * own[pivot] {
+                continue;
+            }
+            rank += 1;
+            for (index, sums) in self.sums.iter_mut().enumerate().skip(pivot + 1) {
+                let share = row[index] / row[pivot];
+                sums.iter_mut().zip(&row).for_each(|(sum, value)| *sum -= share * value);
+            }
+        }
+        rank
+    }
+
+    /// An element.
+    pub fn at(&self, row: usize, column: usize) -> f32 {
+        self.sums[row][column]
+    }
+}
+
+/// A posterior over a logarithmic grid of variances, each step a factor of two, under a prior that is uniform over it.
+/// Its mean, and not its peak, is what variances of other things are made of: these are linear in it.
+pub fn mean_variance(grid: impl Iterator<Item = f32>, log_likelihood: impl Fn(usize, f32) -> f32) -> f32 {
+    let (mut best, mut weights, mut sum) = (f32::NEG_INFINITY, 0.0f32, 0.0f32);
+    for (index, variance) in grid.enumerate() {
+        let log = log_likelihood(index, variance);
+        if log > best {
+            let scale = libm::expf(best - log);
+            weights *= scale;
+            sum *= scale;
+            best = log;
+        }
+        let weight = libm::expf(log - best);
+        weights += weight;
+        sum += weight * variance;
+    }
+    sum / weights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A line through four points: slope with the offset free, and what is left.
+    #[test]
+    fn elimination_is_regression() {
+        let mut normal = Normal::<3>::default();
+        for (x, y) in [(0.0, 1.0), (1.0, 3.1), (2.0, 4.9), (3.0, 7.0)] {
+            normal.take(&[1.0, x, y], 4.0);
+        }
+        assert_eq!(normal.eliminate(1), 1);
+        assert!((normal.at(1, 2) / normal.at(1, 1) - 1.98).abs() < 1e-5);
+        assert!((normal.at(1, 1) - 4.0 * 5.0).abs() < 1e-5);
+        assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.018).abs() < 1e-3, "{}", normal.at(2, 2));
+    }
+
+    /// Inverse gamma: n squares of sum n v have a posterior mean of v n/(n − 2) under a prior uniform in log v.
+    #[test]
+    fn the_mean_is_the_posteriors() {
+        let (n, v) = (10.0, 1e-6f32);
+        let grid = (0..24).map(|k| 1e-9 * libm::exp2f(k as f32));
+        let mean = mean_variance(grid, |_, x| -0.5 * n * (libm::logf(x) + v / x));
+        assert!((mean / (v * n / (n - 2.0)) - 1.0).abs() < 0.02, "{mean}");
+    }
+}
