@@ -231,6 +231,7 @@ fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static str) -
         sigma_log = curvature.sqrt().recip();
     }
     bench.twin.noise = with(at.exp());
+    bench.wander = (bench.twin.noise.bias_walk, bench.twin.noise.force_walk);
     let density = if gyro { bench.twin.noise.bias_walk } else { bench.twin.noise.force_walk };
     let value = density.sqrt() / unit_si;
     Value { name: "q".into(), value, sigma: 0.5 * sigma_log * value, unit: unit.into() }

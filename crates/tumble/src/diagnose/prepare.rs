@@ -1,7 +1,6 @@
 //! From a recording to its twin.
 
 use tumble_core::estimate::{Conditions, Estimate, start};
-use tumble_core::procedure::BoxFaces;
 use tumble_core::tape::Segment;
 
 use super::twin::Twin;
@@ -73,8 +72,6 @@ pub fn prepare_samples(
     };
     let stretches = stretches(tape.segments(), &samples, &device_noise);
     let noise = Noise::new(&device_noise, conditions.stops);
-    let triangular = conditions.faces == BoxFaces::Unknown;
-    let gravity_mps2 = f64::from(conditions.gravity_mps2);
-    let twin = Twin::new(samples, stretches, start, noise, gravity_mps2, triangular);
+    let twin = Twin::new(samples, stretches, start, noise, &conditions);
     Ok(Prepared { twin, tape, estimate, conditions })
 }

@@ -23,5 +23,5 @@ fn model(_: &Twin) -> Model {
     // The zone may lie about the sensor's own zero, or, where a driver takes the bias off first, about rest.
     let about_zero = gyro_axes("dps", 0.2, |axis, moment| -DPS * (moment.raw_rate[axis] / SOFT).tanh());
     let about_rest = gyro_axes("dps", 0.2, |axis, moment| -DPS * (moment.rate[axis] / SOFT).tanh());
-    Model::Shift(vec![about_zero, about_rest])
+    Model::Shift(vec![about_zero.at_every_sample(), about_rest.at_every_sample()])
 }

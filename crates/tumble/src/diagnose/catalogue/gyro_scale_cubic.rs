@@ -17,5 +17,6 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
-    Model::Shift(vec![gyro_axes("ppm/dps^2", 0.03, |axis, moment| 1e-6 / (DPS * DPS) * moment.rate[axis].powi(3))])
+    let variant = gyro_axes("ppm/dps^2", 0.03, |axis, moment| 1e-6 / (DPS * DPS) * moment.rate[axis].powi(3));
+    Model::Shift(vec![variant.at_every_sample()])
 }

@@ -17,5 +17,6 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
-    Model::Shift(vec![gyro_axes("ppm/dps", 5.0, |axis, moment| 1e-6 / DPS * moment.rate[axis].powi(2))])
+    let variant = gyro_axes("ppm/dps", 5.0, |axis, moment| 1e-6 / DPS * moment.rate[axis].powi(2));
+    Model::Shift(vec![variant.at_every_sample()])
 }

@@ -19,19 +19,58 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(twin: &Twin) -> Model {
-    let turns = || twin.stretches.iter().filter(|stretch| stretch.is_whole_turn());
-    if turns().count() < 2 {
+    let visits = visits(twin);
+    if visits.iter().map(Vec::len).sum::<usize>() < 2 {
         return Model::Absent("fewer than two whole turns on the table");
     }
-    // What is missing of a turn counter-clockwise leaves the heading behind, of one clockwise ahead.
-    let sign = |turn: &Stretch| match turn.deed {
+    let variant = |setting, turns: Vec<(usize, f64)>| Variant {
+        setting,
+        parameters: vec![parameter("missing", "deg", 3.0)],
+        influences: vec![Influence::Stop(turns)],
+    };
+    let at = |turn: &Stretch| Some(("at", twin.samples[turn.samples.end - 1].t_s, "s"));
+    let mut variants = Vec::new();
+    let mut every = Vec::new();
+    for visit in &visits {
+        let mut missing = 0.0;
+        for (k, turn) in visit.iter().enumerate() {
+            // One stop off the mark: the next is not.
+            variants.push(variant(at(turn), vec![(turn.number, sign(turn) * DPS)]));
+            // One turn short, and what follows on this face starts from where it ended.
+            let after = visit[k..].iter().map(|later| (later.number, sign(turn) * DPS)).collect::<Vec<_>>();
+            if after.len() > 1 {
+                variants.push(variant(at(turn), after));
+            }
+            missing += sign(turn) * DPS;
+            every.push((turn.number, missing));
+        }
+    }
+    // Every turn short by the same.
+    variants.push(variant(None, every));
+    Model::Shift(variants)
+}
+
+/// What is missing of a turn counter-clockwise leaves the heading behind, of one clockwise ahead.
+fn sign(turn: &Stretch) -> f64 {
+    match turn.deed {
         Deed::Turn { angle_rad, .. } => -angle_rad.signum(),
         _ => 0.0,
-    };
-    let variant = |turn: &Stretch| Variant {
-        setting: Some(("at", twin.samples[turn.samples.end - 1].t_s, "s")),
-        parameters: vec![parameter("missing", "deg", 3.0)],
-        influences: vec![Influence::Stop(vec![(turn.number, sign(turn) * DPS)])],
-    };
-    Model::Shift(turns().map(variant).collect())
+    }
+}
+
+/// Whole turns by stays on a face.
+fn visits(twin: &Twin) -> Vec<Vec<&Stretch>> {
+    let mut visits: Vec<Vec<&Stretch>> = vec![Vec::new()];
+    for stretch in &twin.stretches {
+        match stretch.deed {
+            Deed::Move => visits.push(Vec::new()),
+            _ if stretch.is_whole_turn() => {
+                if let Some(visit) = visits.last_mut() {
+                    visit.push(stretch);
+                }
+            }
+            _ => {}
+        }
+    }
+    visits
 }

@@ -159,6 +159,15 @@ pub fn accel_axes(
     axes(unit, width, move |axis, moment| Push::force(Vector3::ith(axis, value(axis, moment))))
 }
 
+impl Variant {
+    /// The same, evaluated at every sample.
+    #[must_use]
+    pub fn at_every_sample(mut self) -> Self {
+        self.influences = self.influences.into_iter().map(Influence::at_every_sample).collect();
+        self
+    }
+}
+
 fn axes(
     unit: &'static str,
     width: f64,

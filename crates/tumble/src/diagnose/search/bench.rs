@@ -71,6 +71,10 @@ pub struct Bench {
     pub families: Vec<(Family, Range<usize>)>,
     /// So far.
     pub accepted: Vec<Accepted>,
+    /// Noise as the recording was given.
+    pub given: Noise,
+    /// Walks found: the gyroscope's and the accelerometer's densities.
+    pub wander: (f64, f64),
     /// Rows about the present nominal, by the noise they were made under: they cost a quarter of a second.
     made: Vec<(Noise, std::sync::Arc<Rows>)>,
 }
@@ -111,7 +115,18 @@ impl Bench {
             })
             .collect();
         let original = twin.samples.clone();
-        Self { twin, original, influences, candidates, families, accepted: Vec::new(), made: Vec::new() }
+        let given = twin.noise;
+        Self {
+            twin,
+            original,
+            influences,
+            candidates,
+            families,
+            accepted: Vec::new(),
+            given,
+            wander: (0.0, 0.0),
+            made: Vec::new(),
+        }
     }
 
     /// Number of columns that belong to candidates; generic shapes come after.
@@ -185,7 +200,7 @@ impl Bench {
             for accepted in &mut self.accepted {
                 let Some(placed) = self.candidates[accepted.candidate].variants.get(accepted.variant) else { continue };
                 for (i, column) in placed.columns.clone().enumerate() {
-                    if matches!(self.influences[column], Influence::Reading(_)) {
+                    if self.influences[column].reading().is_some() {
                         accepted.taken[i] += fit.theta[next];
                     }
                     next += 1;
@@ -211,7 +226,7 @@ impl Bench {
             *raw = self.original[index];
             let Some(moment) = self.twin.trajectory.moments.get(index) else { continue };
             for &(column, taken) in &columns {
-                if let Influence::Reading(reading) = &self.influences[column] {
+                if let Some(reading) = self.influences[column].reading() {
                     let push = reading(moment);
                     raw.rate -= push.rate * taken;
                     raw.force -= push.force * taken;

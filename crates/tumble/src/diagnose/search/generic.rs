@@ -23,11 +23,13 @@ pub struct Family {
 
 type Shape = Box<dyn Fn(&Moment) -> f64 + Send + Sync>;
 type Shapes = Vec<(String, Shape)>;
+/// A family's name, and its shapes for a recording of this length (s).
+type Group = (&'static str, fn(f64) -> Shapes);
 
 /// All families for a recording.
 pub fn families(twin: &Twin) -> Vec<Family> {
     let end_s = twin.samples.last().map_or(1.0, |raw| raw.t_s).max(1.0);
-    let groups: Vec<(&str, fn(f64) -> Shapes)> = vec![
+    let groups: Vec<Group> = vec![
         ("specific force", |_| vector("f", |moment| moment.force / G)),
         ("products of forces", |_| pairs("f", |moment| moment.force / G)),
         ("cubes of forces", |_| cubes("f", |moment| moment.force / G)),

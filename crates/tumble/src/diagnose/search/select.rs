@@ -46,18 +46,20 @@ pub struct Selection {
 
 /// The null's noise: how much the biases wander, as far as healthy ones do, by evidence.
 fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
-    let mut best = (bench.twin.noise, f64::NEG_INFINITY);
     let terms = bench.accepted_terms(None);
-    let walks = |bench: &Bench, gyro: bool| {
-        bench.accepted.iter().any(|a| bench.candidates[a.candidate].walk.is_some_and(|walk| walk.0 == gyro))
-    };
-    let base = bench.twin.noise;
-    let levels = |fixed: bool, now: f64| if fixed { vec![now] } else { HEALTHY.to_vec() };
-    let gyro_levels = levels(walks(bench, true), base.bias_walk / BIAS_WALK_FLOOR);
-    let accel_levels = levels(walks(bench, false), base.force_walk / FORCE_WALK_FLOOR);
-    for &gyro in &gyro_levels {
-        for &accel in &accel_levels {
-            let noise = with_walks(&base, gyro, accel);
+    let given = bench.given;
+    let mut best = (given, f64::NEG_INFINITY);
+    for noise in [given, given.trusting(bench.twin.stops)] {
+        let noise = with_accepted_walks(bench, with_walks(&noise, HEALTHY[1], HEALTHY[1]));
+        let evidence = bench.fit_alone(noise, &terms).evidence;
+        if evidence > best.1 {
+            best = (noise, evidence);
+        }
+    }
+    let base = best.0;
+    for gyro in HEALTHY {
+        for accel in HEALTHY {
+            let noise = with_accepted_walks(bench, with_walks(&base, gyro, accel));
             let evidence = bench.fit_alone(noise, &terms).evidence;
             if evidence > best.1 {
                 best = (noise, evidence);
@@ -65,6 +67,18 @@ fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
         }
     }
     best
+}
+
+/// Where a bias is accepted as wandering, it does so as found.
+fn with_accepted_walks(bench: &Bench, noise: Noise) -> Noise {
+    let found = |gyro: bool| {
+        bench.accepted.iter().any(|a| bench.candidates[a.candidate].walk.is_some_and(|walk| walk.0 == gyro))
+    };
+    Noise {
+        bias_walk: if found(true) { bench.wander.0 } else { noise.bias_walk },
+        force_walk: if found(false) { bench.wander.1 } else { noise.force_walk },
+        ..noise
+    }
 }
 
 /// Runs the search to its end; `progress` hears what is being done.
@@ -96,6 +110,13 @@ fn accept(bench: &mut Bench, best: &Score) {
     let Score { candidate, variant, widening, .. } = *best;
     bench.accepted.push(Accepted { candidate, variant, widening, taken: vec![0.0; parameters] });
     bench.twin.noise = best.noise;
+    if let Some((gyro, ..)) = bench.candidates[candidate].walk {
+        if gyro {
+            bench.wander.0 = best.noise.bias_walk;
+        } else {
+            bench.wander.1 = best.noise.force_walk;
+        }
+    }
     bench.refit();
 }
 
@@ -120,16 +141,12 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
     let noise = bench.twin.noise;
     // Its share is still taken out of the samples: its columns put it back at exactly that size.
     let mut terms = bench.accepted_terms(None);
-    let walk = bench.candidates[removed.candidate].walk;
-    if walk.is_none() {
-        let back = bench.terms(removed.candidate, removed.variant, removed.widening, &removed.taken);
-        terms.extend(back.into_iter().map(|term| super::ledger::Term { width: 1e-9 * term.width, ..term }));
-    }
+    terms.extend(bench.put_back(&removed));
     let mut best = f64::NEG_INFINITY;
-    for gyro in HEALTHY {
-        for accel in HEALTHY {
-            let noise = with_walks(&noise, gyro, accel);
-            best = best.max(bench.fit_alone(noise, &terms).evidence);
+    for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
+        for (gyro, accel) in [(0, 0), (1, 1), (2, 2), (0, 2), (2, 0)] {
+            let walks = with_accepted_walks(bench, with_walks(&base, HEALTHY[gyro], HEALTHY[accel]));
+            best = best.max(bench.fit_alone(walks, &terms).evidence);
         }
     }
     bench.twin.noise = noise;
@@ -139,17 +156,10 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
 
 /// Gains of all candidates that are not accepted yet, best first.
 pub fn score(bench: &mut Bench) -> Vec<Score> {
-    let base = bench.twin.noise;
     let (settled, whole) = settle_walks(bench);
     let terms = bench.accepted_terms(None);
-    let wandering = |gyro: bool, bench: &Bench| {
-        bench.accepted.iter().any(|a| bench.candidates[a.candidate].walk.is_some_and(|walk| walk.0 == gyro))
-    };
-    let least = Noise {
-        bias_walk: if wandering(true, bench) { base.bias_walk } else { BIAS_WALK_FLOOR },
-        force_walk: if wandering(false, bench) { base.force_walk } else { FORCE_WALK_FLOOR },
-        ..settled
-    };
+    let least = with_walks(&bench.given.trusting(bench.twin.stops), HEALTHY[0], HEALTHY[0]);
+    let least = with_accepted_walks(bench, least);
     let mut noises = vec![settled];
     if least != settled {
         noises.push(least);

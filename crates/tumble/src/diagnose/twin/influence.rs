@@ -48,8 +48,10 @@ pub type Reading = Box<dyn Fn(&Moment) -> Push + Send + Sync>;
 pub enum Influence {
     /// Nothing: lent to another pass.
     None,
-    /// In the readings.
+    /// In the readings, as smoothly as hands move.
     Reading(Reading),
+    /// In the readings, so abruptly that every sample counts: with the sign of a trembling rate, say.
+    EverySample(Reading),
     /// Whole turns (by their stretch) end this much short, rad.
     Stop(Vec<(usize, f64)>),
     /// The table's normal leans along axis 0 or 1 of frame n from a time on (s), rad.
@@ -58,4 +60,23 @@ pub enum Influence {
     Earth(usize, f64),
     /// A lever arm common to all turns along an axis of frame b, m.
     Lever(usize, f64),
+}
+
+impl Influence {
+    /// What it adds to a reading, if that is how it shows.
+    pub fn reading(&self) -> Option<&Reading> {
+        match self {
+            Self::Reading(reading) | Self::EverySample(reading) => Some(reading),
+            _ => None,
+        }
+    }
+
+    /// The same at every sample.
+    #[must_use]
+    pub fn at_every_sample(self) -> Self {
+        match self {
+            Self::Reading(reading) => Self::EverySample(reading),
+            other => other,
+        }
+    }
 }

@@ -13,6 +13,9 @@ pub mod state;
 pub mod trajectory;
 mod walk;
 
+use tumble_core::estimate::Conditions;
+use tumble_core::setup::{BoxFaces, TurnStops};
+
 use data::{Deed, Raw, Stretch};
 use influence::Influence;
 use noise::Noise;
@@ -91,6 +94,8 @@ pub struct Twin {
     pub trajectory: Trajectory,
     /// In force.
     pub noise: Noise,
+    /// How turns end.
+    pub stops: TurnStops,
     /// m/s².
     pub gravity_mps2: f64,
     /// Per segment: how much noisier than in the quiet rests its specific force is.
@@ -105,9 +110,10 @@ impl Twin {
         stretches: Vec<Stretch>,
         start: Nominal,
         noise: Noise,
-        gravity_mps2: f64,
-        triangular: bool,
+        conditions: &Conditions,
     ) -> Self {
+        let gravity_mps2 = f64::from(conditions.gravity_mps2);
+        let triangular = conditions.faces == BoxFaces::Unknown;
         let prior = Prior { start, triangular, earth_sigma: EARTH_SIGMA };
         let trajectory = Trajectory::new(&samples, &stretches, &start, gravity_mps2);
         let mut twin = Self {
@@ -116,6 +122,7 @@ impl Twin {
             nominal: start,
             trajectory,
             noise,
+            stops: conditions.stops,
             gravity_mps2,
             force_scale: Vec::new(),
             prior,

@@ -36,7 +36,27 @@ pub const BIAS_WALK_FLOOR: f64 = 3.046e-12;
 /// Likewise, (m/s²)²/s.
 pub const FORCE_WALK_FLOOR: f64 = 1e-10;
 
+/// A stop against a fence, rad, and a face of a square box, before any recording: the device's expectations.
+const FENCE_RAD: f64 = 0.05 * std::f64::consts::PI / 180.0;
+const SQUARE_RAD: f64 = 20e-6;
+
 impl Noise {
+    /// The same with stops and faces as good as their owner says. What the device found of them may be an effect that it
+    /// took for sloppiness: which of the two is the case is for the evidence to say.
+    #[must_use]
+    pub fn trusting(&self, stops: TurnStops) -> Self {
+        Self {
+            stop_sigma_rad: if stops == TurnStops::Fenced {
+                self.stop_sigma_rad.min(FENCE_RAD)
+            } else {
+                self.stop_sigma_rad
+            },
+            facet_sigma_rad: self.facet_sigma_rad.map(|sigma| sigma.min(SQUARE_RAD)),
+            motion_scale: 1.0,
+            ..*self
+        }
+    }
+
     /// White densities and stops as the device's estimator found them; nothing that wanders beyond the floor, because what
     /// wanders is what the search explains.
     pub fn new(device: &Device, stops: TurnStops) -> Self {
@@ -46,7 +66,7 @@ impl Noise {
             force_density: f64::from(device.force_density),
             bias_walk: BIAS_WALK_FLOOR,
             force_walk: FORCE_WALK_FLOOR,
-            motion_scale: 1.0,
+            motion_scale: f64::from(device.motion_scale).max(1.0),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
         }

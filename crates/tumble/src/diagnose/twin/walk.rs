@@ -235,14 +235,30 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What candidates put in, at no more than `NODES_HZ`: hands move below 12 Hz.
+    /// What candidates put in: those that are smooth at no more than `NODES_HZ`, for hands move below 12 Hz.
     fn sum_pushes(&self, sums: &mut Sums, first: usize, last: usize, solid: bool) {
         if self.influences.is_empty() {
             return;
         }
-        let nominal = self.pass.nominal;
         let rate_hz = (last - first) as f64 / sums.duration_s;
         let stride = ((rate_hz / NODES_HZ) as usize).max(1);
+        let span = (first, last);
+        self.walk_nodes(sums, span, stride, solid, |influence| !matches!(influence, Influence::EverySample(_)));
+        if self.influences.iter().any(|influence| matches!(influence, Influence::EverySample(_))) {
+            self.walk_nodes(sums, span, 1, solid, |influence| matches!(influence, Influence::EverySample(_)));
+        }
+    }
+
+    fn walk_nodes(
+        &self,
+        sums: &mut Sums,
+        (first, last): (usize, usize),
+        stride: usize,
+        solid: bool,
+        chosen: impl Fn(&Influence) -> bool,
+    ) {
+        let nominal = self.pass.nominal;
+        let chosen: Vec<(usize, &Influence)> = self.influences.iter().enumerate().filter(|(_, i)| chosen(i)).collect();
         let mut index = first;
         loop {
             let dt_s = self.trapezoid_s(first, index, last, stride);
@@ -250,19 +266,17 @@ impl<'a> Walk<'a> {
             let to_n = moment.attitude.to_rotation_matrix().into_inner();
             let tilt = to_n.transpose() * Vector3::z().cross_matrix() * self.pass.gravity_mps2;
             let node = Node { dt_s, share: dt_s / sums.duration_s, to_n, tilt, solid };
-            for (c, influence) in self.influences.iter().enumerate() {
-                match influence {
+            for &(c, influence) in &chosen {
+                if let (Influence::Earth(along, unit), false) = (influence, solid) {
                     // The nominal carries its own Earth; what it lacks turns frame n under the box.
-                    Influence::Earth(along, unit) if !solid => sums.push[c].attitude[*along] -= unit * dt_s,
-                    Influence::Reading(reading) => {
-                        let push = reading(moment);
-                        if solid && push.is_nothing() {
-                            continue;
-                        }
-                        sums.add(c, nominal.gyro * push.rate, nominal.accel * push.force, &node);
-                    }
-                    _ => {}
+                    sums.push[c].attitude[*along] -= unit * dt_s;
                 }
+                let Some(reading) = influence.reading() else { continue };
+                let push = reading(moment);
+                if solid && push.is_nothing() {
+                    continue;
+                }
+                sums.add(c, nominal.gyro * push.rate, nominal.accel * push.force, &node);
             }
             if index == last {
                 return;
