@@ -5,7 +5,7 @@
 //! the next value on either side. A density that does not rise away from v has in (v, v + h) at least as many readings as in
 //! (v + h, v + 2h), n; that none is seen has probability e⁻ⁿ for each side. h must be four steps, so that rounding is no hole.
 
-use super::chance::LN_ALARM;
+use super::chance::{LN_ALARM, median};
 use super::tell::{Outcome, found, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
@@ -50,6 +50,9 @@ fn hole(channel: &[f64], step: f64) -> Option<(f64, f64)> {
     let width = (sorted.get(above)? - at).min(at - sorted.get(below.checked_sub(1)?)?);
     let between = |low: f64, high: f64| sorted.partition_point(|v| *v < high) - sorted.partition_point(|v| *v <= low);
     let n = between(at + width, at + 2.0 * width) + between(at - 2.0 * width, at - width);
-    // Without a step of its own the data show the hole alone.
-    (width > 4.0 * step && n as f64 > -LN_ALARM).then_some((width, n as f64))
+    // Other values are spaced more densely than the hole.
+    let beyond: Vec<f64> = sorted.iter().copied().filter(|v| (at + width..at + 3.0 * width).contains(v)).collect();
+    let gaps = beyond.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 0.0).collect();
+    let usual = median(gaps).max(step);
+    (width > 4.0 * usual && n as f64 > -LN_ALARM).then_some((width, n as f64))
 }

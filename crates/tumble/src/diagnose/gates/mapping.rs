@@ -4,7 +4,8 @@
 //! over and as the accelerometer finds it, in sigmas of sheet errors (3° of direction, 5 % of what was turned): χ² of 48 signed
 //! permutations times nine factors. On a clean recording the identity's χ² is below one a pair. The gate wants at once: the
 //! identity worse than 9 a pair (three sigmas in the mean of all pairs), another below 4 a pair, better by 2·ln(432) +
-//! 2·11.5 = 35 than the identity, and no third within 12 of it. With two pairs and sheet errors as sigmas the first
+//! 2·11.5 = 35 than the identity, and no other within 6 of it when every slip
+//! (exchange, reversal, factor) costs 6 to 12. With two pairs and sheet errors as sigmas the first
 //! alone has e⁻⁹; with the second, e⁻¹⁷ and less.
 //!
 //! Gravity's own length: sheet errors are 3 % and 80 mg, so 1 ± 0.15 g is three sigmas and ± 0.3 beyond six; a factor is
@@ -59,9 +60,9 @@ pub struct Mapped {
     pub remap: Option<(Matrix3<f64>, Matrix3<f64>)>,
 }
 
-/// Both gates.
-pub fn examine(view: &View) -> Mapped {
-    let force_factor = force_factor(view);
+/// Both gates; forces that are `clipped` have no length to go by.
+pub fn examine(view: &View, clipped: bool) -> Mapped {
+    let force_factor = if clipped { None } else { force_factor(view) };
     let pairs = pairs(view);
     let mut mapped = Mapped { axes: Outcome::default(), scale: Outcome::default(), remap: None };
     mapped.scale.limit = limit(&SCALE, 2.0, "times", "");
@@ -117,11 +118,25 @@ fn force_factor(view: &View) -> Option<f64> {
 fn decisive(pairs: &[Pair]) -> Option<(Guess, f64)> {
     let mut all: Vec<Guess> = FACTORS.iter().flat_map(|factor| guesses(pairs, *factor)).collect();
     let identity = all[0];
-    all.sort_by(|a, b| a.chi2.total_cmp(&b.chi2));
+    let cost = |guess: &Guess| guess.chi2 + unlikely(guess);
+    all.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let (best, count) = (all[0], pairs.len() as f64);
     let gain = 0.5 * (identity.chi2 - best.chi2) - (all.len() as f64).ln();
     let clear = identity.chi2 > 9.0 * count && best.chi2 < 4.0 * count && gain > -LN_ALARM;
-    (clear && all[1].chi2 - best.chi2 > 12.0).then_some((best, gain))
+    (clear && cost(&all[1]) - cost(&best) > 6.0).then_some((best, gain))
+}
+
+/// −2 ln of a guess's prior, roughly: what takes two slips is rarer than what takes one. It only decides between guesses that
+/// re-orientations hardly tell apart, never whether something is wrong.
+fn unlikely(guess: &Guess) -> f64 {
+    let slips = operations(&guess.mapping).min(operations(&-guess.mapping.transpose()));
+    let factor = match guess.factor {
+        1.0 => 0.0,
+        0.5 | 2.0 => 8.0,
+        0.25 | 4.0 => 10.0,
+        _ => 12.0,
+    };
+    6.0 * slips as f64 + factor
 }
 
 /// Exchanges and reversals that a signed permutation takes.

@@ -3,18 +3,25 @@
 //! One file a gate; each says its statistic and how its false alarms are bounded. Together they may fire on at most 0.2 % of
 //! clean recordings, whatever the sensor's rate, rounding and noise, and however a person's hands shake.
 
+mod aliasing;
 mod chance;
+mod closure;
 mod coarse;
 mod gaps;
 mod hole;
+mod line;
 mod mapping;
 mod pairs;
+mod rocking;
 mod saturation;
+mod shock;
+mod spectrum;
 mod stale;
 mod stamps;
 mod tearing;
 mod tell;
 mod view;
+mod wobble;
 
 use super::diagnosis::{Found, Limit};
 use super::twin::data::Raw;
@@ -69,17 +76,34 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(gaps::examine(&view, steps.found.is_some()));
     gated.take(jitter);
     gated.take(steps);
-    gated.take(stale::examine(&view));
-    gated.take(tearing::examine(&view));
-    let (gyro, accel) = saturation::examine(&view);
+    let stale = stale::examine(&view);
+    let torn = tearing::examine(&view);
+    let shock = shock::examine(&view, &torn.repaired);
+    gated.take(torn);
+    gated.take(shock);
+    let (gyro, accel) = saturation::examine(&view, &stale.repaired);
+    gated.take(stale);
+    let mapped = mapping::examine(&view, accel.found.is_some());
     gated.take(gyro);
     gated.take(accel);
-    gated.take(coarse::examine(&view));
+    // Counts of a range too wide look coarse; the range says so already.
+    if mapped.scale.found.is_none() {
+        gated.take(coarse::examine(&view));
+    }
     gated.take(hole::examine(&view));
-    let mapped = mapping::examine(&view);
     gated.take(mapped.axes);
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
+    let rocking = rocking::examine(&view);
+    gated.take(rocking);
+    gated.take(line::examine(&view));
+    gated.take(aliasing::examine(&view));
+    // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
+    let rotation = ["gyro_saturation", "gyro_coarse_quantization", "axis_mapping", "wrong_full_scale", "undersampling"];
+    if !gated.found.iter().any(|found| rotation.contains(&found.id.as_str())) {
+        gated.take(wobble::examine(&view));
+        gated.take(closure::examine(&view));
+    }
     gated.repaired.sort_unstable();
     gated.repaired.dedup();
     gated.imitated.sort();

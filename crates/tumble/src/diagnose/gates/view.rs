@@ -23,8 +23,6 @@ const BLOCK_S: f64 = 0.5;
 /// A rest, its ends trimmed.
 #[derive(Clone, Debug)]
 pub struct Rest {
-    /// Its number among the segments.
-    pub number: usize,
     /// Samples.
     pub samples: Range<usize>,
     /// Mean, °/s.
@@ -45,7 +43,9 @@ pub struct View<'a> {
     pub channels: [Vec<f64>; 6],
     /// In order of time.
     pub rests: Vec<Rest>,
-    /// Scatter of one reading at rest, rounding included, °/s and g; NaN without rests.
+    /// Median over the recording, °/s: near the offset, since no axis turns most of the time.
+    pub resting: Vector3<f64>,
+    /// Scatter of one reading at rest, rounding included, °/s and g.
     pub sigma: [f64; 6],
     /// Least usual step between different readings; zero where readings are not rounded coarsely.
     pub step: [f64; 6],
@@ -58,9 +58,13 @@ impl<'a> View<'a> {
         let t_s: Vec<f64> = scene.samples.iter().map(|raw| raw.t_s).collect();
         let dt_s = median(t_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
         let channels: [Vec<f64>; 6] = std::array::from_fn(|c| rows.iter().map(|row| row.channels()[c]).collect());
+        let resting = Vector3::from_fn(|c, _| median(channels[c].clone()));
         let step = std::array::from_fn(|c| step(&channels[c]));
-        let mut view = Self { scene, t_s, dt_s, channels, rests: Vec::new(), sigma: [f64::NAN; 6], step };
+        let mut view = Self { scene, t_s, dt_s, channels, rests: Vec::new(), resting, sigma: [f64::NAN; 6], step };
         view.rests = view.find_rests();
+        if view.rests.len() < 3 {
+            view.rests = view.own_rests();
+        }
         view.sigma = std::array::from_fn(|c| view.noise(c));
         view
     }
@@ -126,11 +130,40 @@ impl<'a> View<'a> {
         let floor_dps = 0.5 * self.step[0].max(self.step[1]).max(self.step[2]);
         let limit_dps = (1.6 * quantile(&mut scatters, 0.25) + floor_dps).min(SOLID_DPS);
         let solid = |segment: &Segment| still(segment).is_some_and(|scatter| scatter <= limit_dps);
-        let segments = self.scene.segments.iter().enumerate().filter(|(_, segment)| solid(segment));
-        segments.filter_map(|(number, segment)| self.rest(number, self.samples_of(segment))).collect()
+        let segments = self.scene.segments.iter().filter(|segment| solid(segment));
+        segments.filter_map(|segment| self.rest(self.samples_of(segment))).collect()
     }
 
-    fn rest(&self, number: usize, samples: Range<usize>) -> Option<Rest> {
+    /// Where the board's segmenter finds none (a table that rocks, a rate below its own): half seconds that hardly turn, with
+    /// gravity within 2.5° of the first's, for two seconds.
+    fn own_rests(&self) -> Vec<Rest> {
+        let length = self.count(BLOCK_S).max(4);
+        let quiet = |start: usize| {
+            let share = 1.0 / length as f64;
+            let mean = (start..start + length).map(|i| self.rate(i)).sum::<Vector3<f64>>() * share - self.resting;
+            let rough = (0..3).any(|c| scatter(&self.channels[c][start..start + length]) > SOLID_DPS);
+            let force = (start..start + length).map(|i| self.force(i)).sum::<Vector3<f64>>() * share;
+            (mean.amax() < 2.0 && !rough).then_some(force)
+        };
+        let mut rests = Vec::new();
+        let mut run: Option<(usize, usize, Vector3<f64>)> = None;
+        for start in (0..self.len().saturating_sub(length)).step_by(length) {
+            let force = quiet(start);
+            run = match (run, force) {
+                (Some((first, _, up)), Some(force)) if force.angle(&up) < 0.044 => Some((first, start + length, up)),
+                (before, force) => {
+                    rests.extend(
+                        before.filter(|run| run.1 - run.0 >= 4 * length).and_then(|run| self.rest(run.0..run.1)),
+                    );
+                    force.map(|force| (start, start + length, force))
+                }
+            };
+        }
+        rests.extend(run.filter(|run| run.1 - run.0 >= 4 * length).and_then(|run| self.rest(run.0..run.1)));
+        rests
+    }
+
+    fn rest(&self, samples: Range<usize>) -> Option<Rest> {
         let start = samples.start + self.count(SETTLING_S);
         let end = samples.end.saturating_sub(self.count(LEAVING_S));
         if end < start + self.count(BLOCK_S).max(8) {
@@ -139,13 +172,17 @@ impl<'a> View<'a> {
         let share = 1.0 / (end - start) as f64;
         let rate = (start..end).map(|i| self.rate(i)).sum::<Vector3<f64>>() * share;
         let force = (start..end).map(|i| self.force(i)).sum::<Vector3<f64>>() * share;
-        Some(Rest { number, samples: start..end, rate, force })
+        Some(Rest { samples: start..end, rate, force })
     }
 
-    /// Median over blocks of the scatter about the block's mean.
+    /// Median over blocks of the scatter about the block's mean; without rests, of the quietest blocks.
     fn noise(&self, channel: usize) -> f64 {
         let length = self.count(BLOCK_S).max(4);
         let rests = self.rests.iter().map(|rest| &self.channels[channel][rest.samples.clone()]);
+        if self.rests.is_empty() {
+            let mut all: Vec<f64> = self.channels[channel].chunks_exact(length).map(scatter).collect();
+            return quantile(&mut all, 0.05);
+        }
         median(rests.flat_map(|values| values.chunks_exact(length)).map(scatter).collect())
     }
 }
@@ -157,21 +194,18 @@ pub fn scatter(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (count - 1.0).max(1.0)).sqrt()
 }
 
-/// The spacing that all different readings are multiples of; zero if there is none above a millionth of the largest. One
-/// decimal of the text is a step as well; whether a step is coarse is for gates to say.
+/// The usual spacing of values that occur three times or more; zero where readings hardly repeat. One decimal of the text is a
+/// step as well, and a coarse grid may lie on a finer one unevenly: whether a step is coarse is for gates to say.
 fn step(channel: &[f64]) -> f64 {
     let mut values = channel.to_vec();
     values.sort_by(f64::total_cmp);
-    let largest = values.last().map_or(0.0, |v| v.abs()).max(values.first().map_or(0.0, |v| v.abs()));
-    let mut gaps: Vec<f64> =
-        values.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > 1e-6 * largest).collect();
-    if gaps.len() < 3 {
+    let visited: Vec<f64> = values.chunk_by(|a, b| a == b).filter(|same| same.len() >= 3).map(|same| same[0]).collect();
+    let mut gaps: Vec<f64> = visited.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if gaps.len() < 2 {
         return 0.0;
     }
-    // Text decimals blur a step; the twentieth part of all gaps is one step, and the mean of those near it is sharper.
-    let first = quantile(&mut gaps, 0.05);
-    let near: Vec<f64> = gaps.iter().copied().filter(|gap| (gap / first - 1.0).abs() < 0.2).collect();
-    let step = near.iter().sum::<f64>() / near.len() as f64;
-    let on_grid = gaps.iter().filter(|gap| (*gap / step - (*gap / step).round()).abs() < 0.15).count();
-    if on_grid * 10 >= gaps.len() * 9 { step } else { 0.0 }
+    // The densest part's spacing; text decimals blur it, and the mean of those near it is sharper.
+    let usual = quantile(&mut gaps, 0.2);
+    let near: Vec<f64> = gaps.into_iter().filter(|gap| (gap / usual - 1.0).abs() < 0.2).collect();
+    near.iter().sum::<f64>() / near.len() as f64
 }
