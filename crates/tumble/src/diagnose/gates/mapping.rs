@@ -60,15 +60,15 @@ pub struct Mapped {
     pub remap: Option<(Matrix3<f64>, Matrix3<f64>)>,
 }
 
-/// Both gates; forces that are `clipped` have no length to go by.
-pub fn examine(view: &View, clipped: bool) -> Mapped {
-    let force_factor = if clipped { None } else { force_factor(view) };
+/// Both gates; clipped forces have no length to go by, clipped rates no angle.
+pub fn examine(view: &View, rates_clipped: bool, forces_clipped: bool) -> Mapped {
+    let force_factor = if forces_clipped { None } else { force_factor(view) };
     let pairs = pairs(view);
     let mut mapped = Mapped { axes: Outcome::default(), scale: Outcome::default(), remap: None };
     mapped.scale.limit = limit(&SCALE, 2.0, "times", "");
     mapped.axes.limit = limit(&AXES, 1.0, "variant", "");
-    let best = if pairs.len() < 2 {
-        let why = "fewer than two re-orientations between rests";
+    let best = if pairs.len() < 2 || rates_clipped {
+        let why = if rates_clipped { "the rates clip" } else { "fewer than two re-orientations between rests" };
         mapped.axes.limit = untestable(&AXES, "variant", why);
         None
     } else {

@@ -33,6 +33,8 @@ use view::View;
 /// Less than this is no recording: five seconds, two hundred samples (40 Hz).
 const LEAST_S: f64 = 5.0;
 const LEAST_SAMPLES: usize = 200;
+/// Evidence of clipping, at 15 a flat top, below which steps larger than the noise are the better explanation.
+const MANY_FLATS: f64 = 100.0;
 
 /// What gates look at.
 pub struct Scene<'a> {
@@ -79,17 +81,23 @@ pub fn examine(scene: &Scene) -> Gated {
     let stale = stale::examine(&view);
     let torn = tearing::examine(&view);
     let shock = shock::examine(&view, &torn.repaired);
+    // Bytes torn in neighbouring samples look like knocks.
+    if torn.found.is_none() {
+        gated.take(shock);
+    }
     gated.take(torn);
-    gated.take(shock);
     let (gyro, accel) = saturation::examine(&view, &stale.repaired);
     gated.take(stale);
-    let mapped = mapping::examine(&view, accel.found.is_some());
-    gated.take(gyro);
-    gated.take(accel);
+    let mapped = mapping::examine(&view, gyro.found.is_some(), accel.found.is_some());
     // Counts of a range too wide look coarse; the range says so already.
-    if mapped.scale.found.is_none() {
-        gated.take(coarse::examine(&view));
+    let coarse = if mapped.scale.found.is_none() { coarse::examine(&view) } else { Outcome::default() };
+    // Coarse peaks look flat one by one: then only many of them count.
+    let flat_by_steps = gyro.found.as_ref().is_some_and(|found| found.evidence < MANY_FLATS);
+    if coarse.found.is_none() || !flat_by_steps {
+        gated.take(gyro);
     }
+    gated.take(accel);
+    gated.take(coarse);
     gated.take(hole::examine(&view));
     gated.take(mapped.axes);
     gated.take(mapped.scale);

@@ -97,8 +97,8 @@ fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
     let ahead = &rough[start..(start + view.count(0.5)).min(rough.len())];
     let peak = ahead.iter().take(calm + view.count(LONGEST_S)).fold(0.0_f64, |max, v| max.max(*v));
     let mut end = start + 1;
-    for i in start..start + ahead.len() {
-        if rough[i] > 0.1 * peak {
+    for (i, value) in (start..).zip(ahead) {
+        if *value > 0.1 * peak {
             end = i + 1;
         } else if i - end >= calm {
             break;

@@ -28,7 +28,7 @@ impl Windows {
     pub fn new(view: &View) -> Option<Self> {
         let lengths: Vec<f64> = view.rests.iter().map(|rest| rest.samples.len() as f64).collect();
         let typical = super::chance::median(lengths);
-        if !(typical >= 32.0) {
+        if typical.is_nan() || typical < 32.0 {
             return None;
         }
         let mut length = LONGEST;
