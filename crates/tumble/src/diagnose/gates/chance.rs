@@ -1,0 +1,64 @@
+//! Tail probabilities as natural logarithms: gates look far out, where probabilities themselves underflow.
+
+/// ln of the share of false alarms that one gate may give on a clean recording: 1e-5 by its own arithmetic. Seventeen
+/// gates then give 1.7e-4; that leaves a factor of ten of the 0.2 % allowed to assumptions that hold only nearly.
+pub const LN_ALARM: f64 = -11.5;
+
+/// ln P(X ≥ `count`) of a Poisson variable, by Chernoff's bound: never too small. Zero where `count` is no surprise.
+pub fn ln_poisson_tail(count: f64, mean: f64) -> f64 {
+    if count <= mean || count <= 0.0 {
+        return 0.0;
+    }
+    let mean = mean.max(1e-12);
+    count - mean - count * (count / mean).ln()
+}
+
+/// ln P(X ≥ `count`) of `total` fair coins, by Hoeffding's bound.
+pub fn ln_coin_tail(count: f64, total: f64) -> f64 {
+    let over = count - 0.5 * total;
+    if over <= 0.0 || total <= 0.0 { 0.0 } else { -2.0 * over * over / total }
+}
+
+/// ln P(mean of `freedom` squared normals ≥ `ratio`), by Chernoff's bound.
+pub fn ln_mean_square_tail(ratio: f64, freedom: f64) -> f64 {
+    if ratio <= 1.0 { 0.0 } else { -0.5 * freedom * (ratio - 1.0 - ratio.ln()) }
+}
+
+/// The ratio whose bound in [`ln_mean_square_tail`] is `ln_p`.
+pub fn mean_square_quantile(ln_p: f64, freedom: f64) -> f64 {
+    let (mut low, mut high) = (1.0, 2.0 + 4.0 * -ln_p / freedom.max(1.0));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if ln_mean_square_tail(middle, freedom) > ln_p { low = middle } else { high = middle }
+    }
+    high
+}
+
+/// Middle value; NaN of nothing.
+pub fn median(mut values: Vec<f64>) -> f64 {
+    quantile(&mut values, 0.5)
+}
+
+/// Value at a share of the order; NaN of nothing.
+pub fn quantile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return f64::NAN;
+    }
+    let index = ((values.len() - 1) as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_bound() {
+        // P(Poisson(1) ≥ 10) = 1.1e-7; P(χ²₂/2 ≥ 12) = e⁻¹²; 90 of 100 coins: 1.5e-17.
+        assert!((-16.1..-12.0).contains(&ln_poisson_tail(10.0, 1.0)));
+        assert!((-12.1..-8.0).contains(&ln_mean_square_tail(12.0, 2.0)));
+        assert!((-38.8..-31.0).contains(&ln_coin_tail(90.0, 100.0)));
+        let ratio = mean_square_quantile(-9.0, 20.0);
+        assert!((ln_mean_square_tail(ratio, 20.0) + 9.0).abs() < 1e-6);
+    }
+}

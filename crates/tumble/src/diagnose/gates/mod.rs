@@ -1,0 +1,150 @@
+//! Gates: what the samples themselves show before any physics is fitted. They explain much that looks like exotic physics.
+//!
+//! One file a gate; each says its statistic and how its false alarms are bounded. Together they may fire on at most 0.2 % of
+//! clean recordings, whatever the sensor's rate, rounding and noise, and however a person's hands shake.
+
+mod aliasing;
+mod chance;
+mod closure;
+mod coarse;
+mod gaps;
+mod hole;
+mod line;
+mod mapping;
+mod pairs;
+mod rocking;
+mod saturation;
+mod shock;
+mod spectrum;
+mod stale;
+mod stamps;
+mod tearing;
+mod tell;
+mod view;
+mod wobble;
+
+use super::diagnosis::{Found, Limit};
+use super::twin::data::Raw;
+use crate::recording::{Inference, Recording};
+use tell::Outcome;
+use tumble_core::tape::Segment;
+use view::View;
+
+/// Less than this is no recording: five seconds, two hundred samples (40 Hz).
+const LEAST_S: f64 = 5.0;
+const LEAST_SAMPLES: usize = 200;
+/// Evidence of clipping, at 15 a flat top, below which steps larger than the noise are the better explanation.
+const MANY_FLATS: f64 = 100.0;
+
+/// What gates look at.
+pub struct Scene<'a> {
+    /// The recording with its metadata and own units.
+    pub recording: &'a Recording,
+    /// What it says of its ranges and rate.
+    pub inference: &'a Inference,
+    /// SI, time from the first sample.
+    pub samples: &'a [Raw],
+    /// As the board's segmenter found them.
+    pub segments: &'a [Segment],
+}
+
+/// What they found.
+#[derive(Default)]
+pub struct Gated {
+    /// Effects.
+    pub found: Vec<Found>,
+    /// Samples to be corrected or masked: index and what to put there (None: linear from its neighbours).
+    pub repaired: Vec<usize>,
+    /// Reason why nothing further can be said, if so.
+    pub stop: Option<String>,
+    /// A constant matrix that raw rates (first) and forces (second) must be multiplied by before anything fits: axis
+    /// mapping and full scale.
+    pub remap: Option<(nalgebra::Matrix3<f64>, nalgebra::Matrix3<f64>)>,
+    /// Structural effects that what was found here imitates: they are not to be named.
+    pub imitated: Vec<String>,
+    /// Detection limits.
+    pub limits: Vec<Limit>,
+}
+
+/// All gates.
+pub fn examine(scene: &Scene) -> Gated {
+    let mut gated = Gated::default();
+    if let Some(reason) = unfit(scene) {
+        gated.stop = Some(reason);
+        return gated;
+    }
+    let view = View::new(scene);
+    let (jitter, steps) = stamps::examine(&view);
+    gated.take(gaps::examine(&view, steps.found.is_some()));
+    gated.take(jitter);
+    gated.take(steps);
+    let stale = stale::examine(&view);
+    let torn = tearing::examine(&view);
+    let shock = shock::examine(&view, &torn.repaired);
+    // Bytes torn in neighbouring samples look like knocks.
+    if torn.found.is_none() {
+        gated.take(shock);
+    }
+    gated.take(torn);
+    let (gyro, accel) = saturation::examine(&view, &stale.repaired);
+    gated.take(stale);
+    let mapped = mapping::examine(&view, gyro.found.is_some(), accel.found.is_some());
+    // Counts of a range too wide look coarse; the range says so already.
+    let coarse = if mapped.scale.found.is_none() { coarse::examine(&view) } else { Outcome::default() };
+    // Coarse peaks look flat one by one: then only many of them count.
+    let flat_by_steps = gyro.found.as_ref().is_some_and(|found| found.evidence < MANY_FLATS);
+    if coarse.found.is_none() || !flat_by_steps {
+        gated.take(gyro);
+    }
+    gated.take(accel);
+    gated.take(coarse);
+    gated.take(hole::examine(&view));
+    gated.take(mapped.axes);
+    gated.take(mapped.scale);
+    gated.remap = mapped.remap;
+    let rocking = rocking::examine(&view);
+    gated.take(rocking);
+    gated.take(line::examine(&view));
+    gated.take(aliasing::examine(&view));
+    // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
+    let rotation = ["gyro_saturation", "gyro_coarse_quantization", "axis_mapping", "wrong_full_scale", "undersampling"];
+    if !gated.found.iter().any(|found| rotation.contains(&found.id.as_str())) {
+        gated.take(wobble::examine(&view));
+        gated.take(closure::examine(&view));
+    }
+    gated.repaired.sort_unstable();
+    gated.repaired.dedup();
+    gated.imitated.sort();
+    gated.imitated.dedup();
+    gated.found.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    gated
+}
+
+/// Why nothing can be said at all.
+fn unfit(scene: &Scene) -> Option<String> {
+    let samples = scene.samples;
+    let (Some(first), Some(last)) = (samples.first(), samples.last()) else {
+        return Some("there are no samples".into());
+    };
+    let length_s = last.t_s - first.t_s;
+    if samples.len() < LEAST_SAMPLES || length_s < LEAST_S {
+        return Some(format!(
+            "{} samples in {length_s:.1} s say nothing: record at least a minute with rests and motion",
+            samples.len()
+        ));
+    }
+    let dead = |of: fn(&Raw) -> nalgebra::Vector3<f64>| samples.iter().all(|raw| of(raw) == of(first));
+    if dead(|raw| raw.rate) || dead(|raw| raw.force) {
+        return Some("one triad never changes: it was not read".into());
+    }
+    None
+}
+
+impl Gated {
+    fn take(&mut self, outcome: Outcome) {
+        self.imitated.extend(outcome.found.iter().flat_map(|_| outcome.imitated).map(|id| (*id).into()));
+        self.found.extend(outcome.found);
+        self.limits.extend(outcome.limit);
+        self.repaired.extend(outcome.repaired);
+    }
+}

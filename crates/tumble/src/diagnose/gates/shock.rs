@@ -1,0 +1,138 @@
+//! A knock that the procedure does not bring about (`shock`).
+//!
+//! Statistic: the specific force less its median over ±60 ms. A knock is a burst of at most 35 ms (two samples at least) whose
+//! peak is above 12 times the rms of what surrounds it, from 1.2 s before to 1.2 s after, and above 0.05 g. A normal deviate
+//! reaches 12 sigmas with 1e-33: chance has no part in it. What must be kept out is what people do: put-downs, pushes and
+//! stops at a fence. They come where motion changes, so gravity's direction (3°) and the mean rate (3 °/s, or four tenths of the
+//! rate) must be the same before and after; a hand's moves fail the rms, since they are as rough everywhere. Within 1.2 s of
+//! the recording's ends nothing is told.
+
+use super::chance::median;
+use super::tell::{Outcome, found, limit, value};
+use super::view::View;
+use crate::diagnose::catalogue::Card;
+use nalgebra::Vector3;
+use std::ops::Range;
+
+const IMITATED: &[&str] =
+    &["gyro_bias_step", "accel_bias_step", "accel_quadratic", "gyro_g_squared", "platform_tilt_change"];
+const MEDIAN_S: f64 = 0.06;
+const AROUND_S: f64 = 1.2;
+const LONGEST_S: f64 = 0.035;
+const LEAST_G: f64 = 0.05;
+const TIMES: f64 = 12.0;
+const SAME_RAD: f64 = 0.052;
+const SAME_DPS: f64 = 3.0;
+
+const CARD: Card = Card {
+    id: "shock",
+    name: "one knock",
+    equation: "force += A·u·sin(πt/T) for T of 5 to 30 ms",
+    typical: "a tap 0.2 to 2 g, 5 to 20 ms (half sine as in IEC 60068-2-27); a dropped tool 5 g",
+    shows: "a few samples of all channels",
+    confounded: &["byte_tearing"],
+    separate_by: "leave the table alone while it records: what comes again comes from the sensor",
+};
+
+/// The gate; `torn` samples are passed over.
+pub fn examine(view: &View, torn: &[usize]) -> Outcome {
+    let rough = roughness(view, torn);
+    let noise = (3..6).map(|c| view.sigma[c]).filter(|s| s.is_finite()).fold(0.0, f64::max);
+    let least = LEAST_G.max(TIMES * noise);
+    let mut outcome =
+        Outcome { limit: limit(&CARD, least, "g", "in a rest or in the middle of a turn"), ..Outcome::default() };
+    let mut knocks: Vec<(Range<usize>, f64, f64)> = Vec::new();
+    let mut index = 0;
+    while index < rough.len() {
+        if rough[index] < least {
+            index += 1;
+            continue;
+        }
+        let burst = burst(view, &rough, index);
+        if let Some((peak, over)) = knock(view, &rough, &burst) {
+            knocks.push((burst.clone(), peak, over));
+        }
+        index = burst.end;
+    }
+    if let Some((strongest, peak, over)) = knocks.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        let start_s = view.scene.recording.origin_s() + view.t_s[strongest.start];
+        let parameters = vec![
+            value("peak", *peak, noise + 0.1 * peak, "g"),
+            value("time", start_s, view.dt_s, "s"),
+            value("knocks", knocks.len() as f64, 0.0, ""),
+        ];
+        outcome.found = Some(found(&CARD, 0.5 * over * over, parameters, view.place(0x3f, strongest.clone())));
+        outcome.imitated = IMITATED;
+        // One sample to either side: the filter's tails.
+        outcome.repaired = knocks
+            .iter()
+            .flat_map(|knock| knock.0.start.saturating_sub(1)..(knock.0.end + 1).min(view.len()))
+            .collect();
+    }
+    outcome
+}
+
+/// Length of the force less its running median, g.
+fn roughness(view: &View, torn: &[usize]) -> Vec<f64> {
+    let half = view.count(MEDIAN_S).max(4);
+    let count = view.len();
+    let mut squares = vec![0.0; count];
+    let mut window = Vec::new();
+    for channel in &view.channels[3..] {
+        for (i, square) in squares.iter_mut().enumerate() {
+            window.clear();
+            window.extend_from_slice(&channel[i.saturating_sub(half)..(i + half + 1).min(count)]);
+            let middle = window.len() / 2;
+            let median = *window.select_nth_unstable_by(middle, f64::total_cmp).1;
+            *square += (channel[i] - median).powi(2);
+        }
+    }
+    torn.iter().for_each(|i| squares[*i] = 0.0);
+    squares.into_iter().map(f64::sqrt).collect()
+}
+
+/// From the first sample beyond the limit to the last before 30 ms of calm.
+fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
+    let calm = view.count(0.03).max(2);
+    let ahead = &rough[start..(start + view.count(0.5)).min(rough.len())];
+    let peak = ahead.iter().take(calm + view.count(LONGEST_S)).fold(0.0_f64, |max, v| max.max(*v));
+    let mut end = start + 1;
+    for (i, value) in (start..).zip(ahead) {
+        if *value > 0.1 * peak {
+            end = i + 1;
+        } else if i - end >= calm {
+            break;
+        }
+    }
+    start..end
+}
+
+/// Its peak and how many times the surrounding rms that is, if it is a knock.
+fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)> {
+    let (around, gap) = (view.count(AROUND_S), view.count(0.04).max(2));
+    let length_s = burst.len() as f64 * view.dt_s;
+    let inside = burst.start >= around && burst.end + around <= view.len();
+    if burst.len() < 2 || length_s > LONGEST_S.max(3.5 * view.dt_s) || !inside {
+        return None;
+    }
+    let before = burst.start - around..burst.start - gap;
+    let after = burst.end + gap..burst.end + around;
+    let peak = rough[burst.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
+    let largest = |range: &Range<usize>| rough[range.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
+    let rms =
+        |range: &Range<usize>| (rough[range.clone()].iter().map(|v| v * v).sum::<f64>() / range.len() as f64).sqrt();
+    // Knocks beside it belong to a put-down, which bounces.
+    let alone = peak > 4.0 * largest(&before).max(largest(&after));
+    let over = peak / rms(&before).max(rms(&after)).max(1e-9);
+    (alone && over > TIMES && same_motion(view, &before, &after)).then_some((peak, over))
+}
+
+fn same_motion(view: &View, before: &Range<usize>, after: &Range<usize>) -> bool {
+    let middle = |range: &Range<usize>, channel: usize| median(view.channels[channel][range.clone()].to_vec());
+    let force = |range: &Range<usize>| Vector3::from_fn(|i, _| middle(range, 3 + i));
+    let rate = |range: &Range<usize>| Vector3::from_fn(|i, _| middle(range, i));
+    let up = view.rests.iter().map(|rest| rest.rate).next().unwrap_or_default();
+    let (r0, r1) = (rate(before) - up, rate(after) - up);
+    // A whole turn's axis is up; a re-orientation's is not, and gravity moves with it.
+    force(before).angle(&force(after)) < SAME_RAD && (r1 - r0).norm() < SAME_DPS.max(0.4 * r0.norm().min(r1.norm()))
+}

@@ -1,0 +1,122 @@
+//! High and low byte of a reading from two samples (`byte_tearing`).
+//!
+//! Statistic: single-sample spikes on one channel of 256 counts against one of the neighbours or their mean, within a
+//! tolerance of four sigmas of noise (at least six counts), where the neighbours straddle a multiple of 256 counts, and five
+//! samples to either side are smooth. What makes spikes of any size is counted beside it: spikes of 100 to 600 counts
+//! that fail the size or the straddling. If C such occur, a spike of another cause falls on the right size (share
+//! 2·tolerance/500 for either sign) astride a boundary (share (|step| + 2·tolerance)/256) by chance: expected
+//! E = (C + 0.03)·ρ with ρ that product; one recording in thirty has such a spike of one channel alone. Poisson's tail of the
+//! count against E.
+
+use super::chance::{LN_ALARM, ln_poisson_tail};
+use super::tell::{Outcome, found, limit, untestable, value};
+use super::view::View;
+use crate::diagnose::catalogue::Card;
+use crate::recording::{Basis, Known};
+
+const BYTE: f64 = 256.0;
+/// Spikes that are looked at, counts.
+const SPIKES: std::ops::Range<f64> = 100.0..600.0;
+
+const CARD: Card = Card {
+    id: "byte_tearing",
+    name: "bytes of two samples in one reading",
+    equation: "c_out = 256·floor(c_k−1/256) + c_k mod 256, or the other way round",
+    typical: "a few per cent of high-byte changes where registers are read one by one (MPU-9250 register map: burst reads are safe)",
+    shows: "single samples of one channel",
+    confounded: &["shock"],
+    separate_by: "read all data registers in one burst: torn readings disappear, knocks do not",
+};
+
+struct Spike {
+    index: usize,
+    torn: bool,
+    share: f64,
+}
+
+/// The gate.
+pub fn examine(view: &View) -> Outcome {
+    let ranges = [(view.scene.inference.gyro_range_dps, 0..3), (view.scene.inference.accel_range_g, 3..6)];
+    let (mut torn, mut others, mut share, mut channels) = (Vec::new(), 0.03, 0.0_f64, 0u8);
+    let mut tested = false;
+    for (range, triad) in ranges {
+        for channel in triad {
+            let Some(count) = count_of(range, view.step[channel]) else { continue };
+            tested = true;
+            for spike in spikes(view, channel, count) {
+                share = share.max(spike.share);
+                if spike.torn {
+                    channels |= 1 << channel;
+                    torn.push(spike.index);
+                } else {
+                    others += 1.0;
+                }
+            }
+        }
+    }
+    if !tested {
+        return Outcome {
+            limit: untestable(&CARD, "readings", "readings are not whole counts of a known range"),
+            ..Outcome::default()
+        };
+    }
+    let why = "where a channel passes a multiple of 256 counts";
+    let mut outcome = Outcome { limit: limit(&CARD, 1.0, "readings", why), ..Outcome::default() };
+    let ln_p = ln_poisson_tail(torn.len() as f64, others * share);
+    torn.sort_unstable();
+    torn.dedup();
+    if let (true, Some(&first), Some(&last)) = (ln_p < 0.8 * LN_ALARM, torn.first(), torn.last()) {
+        let number = torn.len() as f64;
+        let parameters = vec![value("readings", number, number.sqrt(), "")];
+        outcome.found = Some(found(&CARD, -ln_p, parameters, view.place(channels, first..last + 1)));
+        outcome.repaired = torn;
+    }
+    outcome
+}
+
+/// One count of a range, by the step where it shows: makers' counts differ from range/2^15 by up to 15 %.
+fn count_of(range: Known, step: f64) -> Option<f64> {
+    let sheet = range.value / 32768.0;
+    let near = (0.95..1.2).contains(&(step / sheet));
+    (range.basis != Basis::Largest && near).then_some(step)
+}
+
+fn spikes(view: &View, channel: usize, count: f64) -> Vec<Spike> {
+    let values = &view.channels[channel];
+    let noise = view.sigma[channel] / count;
+    let tolerance = if noise.is_finite() { (4.0 * noise).max(6.0) } else { 6.0 };
+    let c = |i: usize| values[i] / count;
+    let bend = |i: usize| c(i) - 0.5 * (c(i - 1) + c(i + 1));
+    let mut spikes = Vec::new();
+    for index in 5..values.len().saturating_sub(5) {
+        let size = bend(index);
+        let (before, now, after) = (c(index - 1), c(index), c(index + 1));
+        let step = (after - before).abs();
+        if !SPIKES.contains(&size.abs()) || step > 0.3 * size.abs() || !alone(view, channel, index) {
+            continue;
+        }
+        let smooth =
+            (2..=4).all(|k| bend(index - k).abs() < size.abs() / 6.0 && bend(index + k).abs() < size.abs() / 6.0);
+        if !smooth {
+            continue;
+        }
+        let reach = tolerance + 1.5e-3 * now.abs(); // a count is known to 0.1 %
+        let sized = [size, now - before, now - after].iter().any(|d| (d.abs() - BYTE).abs() < tolerance);
+        let (low, high) = (before.min(after) - reach, before.max(after) + reach);
+        let torn = sized && (low / BYTE).floor() != (high / BYTE).floor();
+        let share = 2.0 * tolerance / 500.0 * ((step + 2.0 * reach) / BYTE).min(1.0);
+        spikes.push(Spike { index, torn, share });
+    }
+    spikes
+}
+
+/// No other channel of the sample jumps by more than a quarter of what this one does, in counts.
+fn alone(view: &View, channel: usize, index: usize) -> bool {
+    let bend = |c: usize| {
+        let v = &view.channels[c];
+        (v[index] - 0.5 * (v[index - 1] + v[index + 1])).abs() / view.step[c].max(1e-9)
+    };
+    let own = bend(channel);
+    let others = (0..6).filter(|c| *c != channel && view.step[*c] > 0.0).map(bend);
+    others.filter(|other| *other > 0.25 * own).count() <= 1
+}
