@@ -105,6 +105,9 @@ pub struct OtherRecording {
     /// With it.
     #[serde(serialize_with = "as_number")]
     pub after: f64,
+    /// Half the fall of the sum of squares: ln of a Bayes factor, as nothing is fitted.
+    #[serde(serialize_with = "as_number")]
+    pub gain: f64,
 }
 
 /// Before and after, on data that the parameters were not fitted to.

@@ -49,15 +49,16 @@ pub fn try_on(diagnosis: &mut Diagnosis, recording: &Recording, file: &str, opti
         Err(why) => return diagnosis.reasons.push(format!("{file}: not tried, {why}.")),
     };
     let sized: Vec<Option<Sized>> = diagnosis.effects.iter().map(|found| sizes(&bench, found)).collect();
-    let all = mean_square(&mut bench, &sized.iter().flatten().flatten().copied().collect::<Vec<_>>());
+    let (after, rows) = mean_square(&mut bench, &sized.iter().flatten().flatten().copied().collect::<Vec<_>>());
     for (k, found) in diagnosis.effects.iter_mut().enumerate().filter(|(_, found)| carries(found)) {
         if sized[k].is_none() {
             diagnosis.reasons.push(format!("{file}: {} was not tried, it cannot show in this recording.", found.id));
             continue;
         }
         let others: Sized = (0..sized.len()).filter(|j| *j != k).filter_map(|j| sized[j].clone()).flatten().collect();
-        let before = mean_square(&mut bench, &others);
-        found.other_recordings.push(OtherRecording { file: file.into(), before, after: all });
+        let (before, _) = mean_square(&mut bench, &others);
+        let gain = 0.5 * rows * (before - after);
+        found.other_recordings.push(OtherRecording { file: file.into(), before, after, gain });
     }
 }
 
@@ -103,8 +104,9 @@ fn sizes(bench: &Bench, found: &Found) -> Option<Sized> {
     sized.map(|(column, parameter)| Some((column, value(&parameter.name)?))).collect()
 }
 
-/// Mean square of the nominal's rows when these are taken out of the samples and the nominal is fitted to what is left.
-fn mean_square(bench: &mut Bench, sized: &[(usize, f64)]) -> f64 {
+/// Mean square and number of the nominal's rows when these are taken out of the samples and the nominal is fitted to what
+/// is left.
+fn mean_square(bench: &mut Bench, sized: &[(usize, f64)]) -> (f64, f64) {
     let Bench { twin, original, influences, .. } = bench;
     twin.samples.clone_from(original);
     twin.fit();
@@ -121,5 +123,6 @@ fn mean_square(bench: &mut Bench, sized: &[(usize, f64)]) -> f64 {
         }
         twin.fit();
     }
-    twin.rows(&[]).mean_square(|_| true)
+    let rows = twin.rows(&[]);
+    (rows.mean_square(|_| true), rows.at.len() as f64)
 }

@@ -29,7 +29,8 @@ pub fn picture(fit: &FitReport) -> Option<String> {
         picture.text("small", Anchor::End, (LABELS - 8.0, y + 21.0), name);
         for (class, value, offset) in [("bar", channel.before, 4.0), ("bar-found", channel.after, 18.0)] {
             picture.bar(class, LABELS, y + offset, x(value) - LABELS, 12.0);
-            picture.text("small halo", Anchor::Start, (x(value) + 5.0, y + offset + 10.0), &words::figure(value));
+            // In a column of their own, where no line runs through them.
+            picture.text("small", Anchor::End, (LABELS + CHART + 58.0, y + offset + 10.0), &words::figure(value));
         }
     }
     picture.bar("bar", LABELS, 8.0, 14.0, 10.0);

@@ -3,6 +3,7 @@
 use super::svg::{Anchor, Picture};
 use super::words;
 use crate::diagnose::exhibits::Exhibits;
+use crate::diagnose::search::null::FALSE_ALARMS;
 
 const ROW: f64 = 20.0;
 const LABELS: f64 = 210.0;
@@ -38,12 +39,16 @@ pub fn picture(exhibits: &Exhibits, found: &[String]) -> Option<String> {
         let class = if found.contains(id) { "bar-found" } else { "bar" };
         picture.text("small", Anchor::End, (LABELS - 8.0, y + 13.0), id);
         picture.bar(class, x(0.0), y + 3.0, x(*gain) - x(0.0), ROW - 6.0);
-        let end = x(gain.max(0.0)).max(x(0.0)) + 5.0;
-        picture.text("small halo", Anchor::Start, (end, y + 13.0), &words::figure(*gain));
+        // In a column of their own, where no line runs through them.
+        picture.text("small", Anchor::End, (LABELS + CHART + 62.0, y + 13.0), &format!("{gain:.1}"));
     }
     let limit = x(exhibits.threshold);
     picture.line("limit", (limit, TOP - 8.0), (limit, bottom));
-    let note = format!("threshold {:.1}: chance exceeds it in 3 of 1000 recordings", exhibits.threshold);
+    let note = format!(
+        "threshold {:.1}: chance alone exceeds it in at most {:.0} of 1000 recordings",
+        exhibits.threshold,
+        1000.0 * FALSE_ALARMS
+    );
     let (anchor, at) =
         if limit < LABELS + 0.5 * CHART { (Anchor::Start, limit - 4.0) } else { (Anchor::End, limit + 4.0) };
     picture.text("small", anchor, (at, TOP - 14.0), &note);

@@ -44,7 +44,7 @@ fn cells(groups: &[Vec<&Segment>], at: &[Address], values: &[f64]) -> Vec<[Cell;
 }
 
 /// The picture; none without rows.
-pub fn picture(exhibits: &Exhibits) -> Option<String> {
+pub fn picture(exhibits: &Exhibits, after_what: &str) -> Option<String> {
     let used = |number: usize| exhibits.at.iter().any(|at| at.stretch == number);
     let groups = groups(&exhibits.segments, used);
     if groups.is_empty() {
@@ -60,7 +60,7 @@ pub fn picture(exhibits: &Exhibits) -> Option<String> {
     picture.text("small", Anchor::End, (LABELS - 8.0, TOP_ROOM - 6.0), "segment, from s");
     let before = cells(&groups, &exhibits.at, &exhibits.before);
     let after = cells(&groups, &exhibits.after_at, &exhibits.after);
-    for (side, (title, cells)) in [("before", &before), ("after what was found", &after)].into_iter().enumerate() {
+    for (side, (title, cells)) in [("before", &before), (after_what, &after)].into_iter().enumerate() {
         draw(&mut picture, LABELS + side as f64 * (panel + BETWEEN), title, &groups, cells);
     }
     legend(&mut picture, height - 34.0);
@@ -111,7 +111,13 @@ fn colour(mean: f64) -> [u8; 3] {
 
 /// Two figures: a cell is narrow.
 fn short(mean: f64) -> String {
-    if mean >= 9.95 { format!("{mean:.0}") } else { format!("{mean:.1}") }
+    if mean >= 99_999.5 {
+        format!("{mean:.0e}")
+    } else if mean >= 9.95 {
+        format!("{mean:.0}")
+    } else {
+        format!("{mean:.1}")
+    }
 }
 
 fn legend(picture: &mut Picture, y: f64) {

@@ -4,7 +4,7 @@ use super::svg::{Anchor, Picture, tick_label, ticks};
 use crate::diagnose::exhibits::Regression;
 
 const PANEL: (f64, f64) = (370.0, 250.0);
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 68.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 48.0;
 /// Single rows drawn; the means are over all.
@@ -86,7 +86,7 @@ fn axes(picture: &mut Picture, frame: &Frame, title: &str) {
     picture.line("axis", (frame.left, bottom), (right, bottom));
     let middle = (frame.left + 0.5 * PANEL.0, bottom + 36.0);
     picture.text("small", Anchor::Middle, middle, "what the effect predicts for a comparison, sigmas");
-    picture.slanted("small middle", (frame.left - 38.0, TOP + 0.5 * PANEL.1), 90.0, "residual, sigmas");
+    picture.slanted("small middle", (frame.left - 52.0, TOP + 0.5 * PANEL.1), 90.0, "residual, sigmas");
 }
 
 /// Every k-th by the size of the signal, so that what the effect moves is seen among the many that it does not.

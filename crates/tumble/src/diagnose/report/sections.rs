@@ -23,11 +23,20 @@ pub fn place(diagnosis: &Diagnosis, exhibits: Option<&Exhibits>) -> String {
     if diagnosis.effects.is_empty() && diagnosis.unknown.is_none() {
         body += &paragraph("Nowhere does more than noise stand out.");
     }
-    body += &match exhibits.and_then(heat::picture) {
+    body += &match exhibits.and_then(|exhibits| heat::picture(exhibits, after_what(diagnosis))) {
         Some(svg) => figure(&svg, RESIDUALS),
         None => paragraph("No picture: no motion was fitted to this recording."),
     };
     section("where", "Where", &body)
+}
+
+/// What stands in the right half: where nothing could be named, what came nearest.
+fn after_what(diagnosis: &Diagnosis) -> &'static str {
+    match (&diagnosis.unknown, diagnosis.effects.is_empty()) {
+        (None, true) => "after (nothing was found)",
+        (None, false) => "after what was found",
+        (Some(_), _) => "after the nearest known effects",
+    }
 }
 
 fn place_words(place: &Place, exhibits: Option<&Exhibits>) -> String {
@@ -75,12 +84,7 @@ fn effect(found: &Found, threshold: Option<f64>) -> String {
         facts
             .push(("held out", format!("each half by the other half's numbers: {before} without it, {after} with it")));
     }
-    for other in &found.other_recordings {
-        let verb = if other.after < other.before { "it holds there" } else { "it does not hold there" };
-        let (before, after) = (words::figure(other.before), words::figure(other.after));
-        facts
-            .push(("elsewhere", format!("{}, same numbers: {before} without it, {after} with it: {verb}", other.file)));
-    }
+    facts.extend(found.other_recordings.iter().map(|other| ("elsewhere", words::elsewhere(other))));
     let rows: Vec<Vec<String>> = found.parameters.iter().map(parameter).collect();
     let numbers = table(&["parameter", "value#", "\u{b1} sigma#", "unit", "sigmas from none#"], &rows);
     let title = super::html::escape(&format!("{} ({})", words::capital(&found.name), found.id));
@@ -93,14 +97,8 @@ fn sure(found: &Found, threshold: Option<f64>) -> String {
 }
 
 fn parameter(value: &crate::diagnose::diagnosis::Value) -> Vec<String> {
-    let decimals = words::decimals(value.sigma);
-    vec![
-        value.name.clone(),
-        format!("{:.decimals$}", value.value),
-        format!("{:.decimals$}", value.sigma),
-        value.unit.clone(),
-        format!("{:.1}", words::significance(value)),
-    ]
+    let [size, sigma] = words::size_and_sigma(value);
+    vec![value.name.clone(), size, sigma, value.unit.clone(), format!("{:.1}", words::significance(value))]
 }
 
 /// Before and after.
@@ -115,9 +113,12 @@ pub fn fit(diagnosis: &Diagnosis) -> String {
         row("data left out of the fit", fit.before.held_out, fit.after.held_out),
     ];
     rows.extend(fit.per_channel.iter().map(|(name, channel)| row(name, channel.before, channel.after)));
+    let nearest =
+        if diagnosis.unknown.is_some() { " After: with the nearest of the effects I know, named or not." } else { "" };
     let told = "Mean squared residual in units of its noise. Left out: each half of every position is predicted with numbers \
                 from the other halves.";
-    let body = table(&["mean squared residual", "before#", "after#"], &rows) + &figure(&svg, told);
+    let told = format!("{told}{nearest}");
+    let body = table(&["mean squared residual", "before#", "after#"], &rows) + &figure(&svg, &told);
     section("fit", "Before and after", &body)
 }
 
@@ -169,7 +170,7 @@ pub fn unknown(diagnosis: &Diagnosis) -> String {
     let body = match &diagnosis.unknown {
         None => paragraph("Nothing without a name is left over."),
         Some(unknown) => {
-            let follows = unknown.correlates_with.iter().map(|shape| vec![shape.clone()]).collect::<Vec<_>>();
+            let follows: Vec<Vec<String>> = words::shapes(unknown).into_iter().map(|shape| vec![shape]).collect();
             paragraph(&words::resemblance(unknown)) + &table(&["it follows (best first)"], &follows)
         }
     };

@@ -44,17 +44,19 @@ impl Story {
 pub fn story(diagnosis: &Diagnosis, exhibits: Option<&Exhibits>) -> String {
     let mut story = Story { lines: Vec::new() };
     story.say(word(diagnosis.verdict), &words::verdict(diagnosis), 4);
-    let full = if diagnosis.unknown.is_some() { 1 } else { IN_FULL };
-    for found in diagnosis.effects.iter().take(full) {
-        effect(&mut story, found, exhibits);
+    let alone = diagnosis.unknown.is_none();
+    let full = if alone { IN_FULL } else { 1 };
+    for (k, found) in diagnosis.effects.iter().take(full).enumerate() {
+        effect(&mut story, found, exhibits, k == 0 && alone);
     }
-    let rest: Vec<String> = diagnosis.effects.iter().skip(full).map(|f| format!("{} ({})", f.name, f.id)).collect();
+    let rest: Vec<&str> = diagnosis.effects.iter().skip(full).map(|found| found.id.as_str()).collect();
     if !rest.is_empty() {
-        story.say("also", &format!("{}.", rest.join("; ")), 2);
+        story.say("also", &rest.join(", "), 1);
     }
     if let Some(unknown) = &diagnosis.unknown {
-        story.say("where", &place(&unknown.place, exhibits), 2);
-        story.say("follows", &words::sentence(&unknown.correlates_with.join("; ")), 3);
+        let label = if diagnosis.effects.is_empty() { "where" } else { "unknown at" };
+        story.say(label, &place(&unknown.place, exhibits), 1);
+        story.say("follows", &words::shapes(unknown).join("; "), 2);
         story.say("like", &words::resemblance(unknown), 2);
     }
     fit(&mut story, diagnosis);
@@ -80,29 +82,27 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Six or seven lines.
-fn effect(story: &mut Story, found: &Found, exhibits: Option<&Exhibits>) {
+/// Eight lines at most, or four.
+fn effect(story: &mut Story, found: &Found, exhibits: Option<&Exhibits>, full: bool) {
     story.say("where", &place(&found.place, exhibits), 1);
-    story.say("what", &format!("{}: {}; {}", found.id, found.equation, numbers(found)), 2);
+    story.say("what", &format!("{}: {}; {}", found.id, found.equation, numbers(found)), if full { 2 } else { 1 });
     let rival = match &found.runner_up {
         Some(rival) => format!("; next best {}, {:.1} less", rival.id, rival.gap),
         None => String::new(),
     };
-    let odds = words::odds(found.evidence);
-    story.say("how sure", &format!("{odds} (ln Bayes factor {:.1}){rival}.", found.evidence), 1);
-    if let Some(ties) = words::ties(found) {
-        story.say("tied", &ties, 2);
+    let sure = format!("{} (ln Bayes factor {:.1}){rival}", words::odds(found.evidence), found.evidence);
+    if full {
+        story.say("how sure", &sure, 1);
+        if let Some(ties) = words::ties(found) {
+            story.say("tied", &ties, 2);
+        }
+        for other in found.other_recordings.iter().take(2) {
+            story.say("elsewhere", &words::elsewhere(other), 1);
+        }
+    } else {
+        let tied = if found.tied_with.is_empty() { "" } else { "; tied with " };
+        story.say("how sure", &format!("{sure}{tied}{}", found.tied_with.join(", ")), 2);
     }
-    for other in found.other_recordings.iter().take(2) {
-        story.say("elsewhere", &elsewhere(other), 1);
-    }
-}
-
-/// One line on another recording.
-fn elsewhere(other: &crate::diagnose::diagnosis::OtherRecording) -> String {
-    let verb = if other.after < other.before { "explains" } else { "does NOT explain" };
-    let (before, after) = (words::figure(other.before), words::figure(other.after));
-    format!("the same numbers: left over {before} -> {after}, it {verb} more of {}", other.file)
 }
 
 fn place(place: &crate::diagnose::diagnosis::Place, exhibits: Option<&Exhibits>) -> String {
@@ -136,10 +136,16 @@ fn fit(story: &mut Story, diagnosis: &Diagnosis) {
     }
     let figure = words::figure;
     let text = if diagnosis.effects.is_empty() {
-        format!("{} (1 is pure noise)", figure(before.train))
+        // What came near explaining an unknown is not named, but what it would leave is told.
+        let near = if diagnosis.unknown.is_some() && after.train < 0.98 * before.train {
+            format!("; {} with the nearest of the effects I know", figure(after.train))
+        } else {
+            String::new()
+        };
+        format!("{}{near} (1 is noise alone)", figure(before.train))
     } else {
         format!(
-            "{} -> {} on all data; {} -> {} on data left out of the fit (1 is pure noise)",
+            "{} -> {} on all data; {} -> {} on data left out of the fit (1: noise)",
             figure(before.train),
             figure(after.train),
             figure(before.held_out),

@@ -1,6 +1,6 @@
 //! The sentences: one source for the page and the terminal.
 
-use crate::diagnose::diagnosis::{Diagnosis, Found, Unknown, Value, Verdict};
+use crate::diagnose::diagnosis::{Diagnosis, Found, OtherRecording, Unknown, Value, Verdict};
 use crate::diagnose::exhibits::Exhibits;
 
 /// The verdict in a sentence that a person understands.
@@ -35,10 +35,16 @@ fn fall(diagnosis: &Diagnosis) -> String {
         return ".".into(); // nothing was fitted: the samples themselves show it
     }
     let which = if diagnosis.effects.len() > 1 { "these" } else { "that" };
+    let (from, to) = (figure(before), figure(after));
+    if after > 1.02 * before {
+        return format!(
+            "; but with {which} modelled, more was left over than before in data it had not seen ({from}, then {to}): do not \
+             trust the name."
+        );
+    }
+    let verb = if after < 0.98 * before { "fell" } else { "went" };
     format!(
-        "; with {which} modelled, what was left over in data it had not seen went from {} to {} (1 is pure noise).",
-        figure(before),
-        figure(after)
+        "; with {which} modelled, what was left over in data it had not seen {verb} from {from} to {to} (1 is noise alone)."
     )
 }
 
@@ -56,16 +62,16 @@ fn unknown(diagnosis: &Diagnosis) -> String {
 }
 
 fn left(mean_square: f64) -> String {
-    format!("what is left is {} times what its noise alone leaves", figure(mean_square))
+    format!("left over {}, noise alone leaves up to 1", figure(mean_square))
 }
 
 /// What an unknown is like, and how sure it is that there is one.
 pub fn resemblance(unknown: &Unknown) -> String {
     let alike = match unknown.resembles.as_slice() {
-        [] => "It resembles none of the effects I know.".into(),
-        ids => format!("It resembles {}, but something without a name explains it better.", ids.join(", ")),
+        [] => "None of the effects I know is like it.".into(),
+        ids => format!("It resembles {}, but they do not explain it all.", ids.join(", ")),
     };
-    format!("{alike} Chance alone would leave as much {}.", rarely(unknown.p_value))
+    format!("{alike} Chance leaves as much {}.", rarely(unknown.p_value))
 }
 
 /// A probability of chance, in words.
@@ -79,10 +85,15 @@ pub fn rarely(p: f64) -> String {
 
 /// ln of a Bayes factor as odds.
 pub fn odds(evidence: f64) -> String {
-    if evidence < 0.0 {
-        return format!("odds of {} to 1 against it", large((-evidence).min(690.0).exp()));
+    let side = if evidence < 0.0 { "against" } else { "for" };
+    if !evidence.is_finite() {
+        return "odds beyond reckoning".into();
     }
-    format!("odds of {} to 1 for it", large(evidence.min(690.0).exp()))
+    let size = evidence.abs();
+    // exp overflows at 709; from 10^9 on only the power is told.
+    let odds =
+        if size < 20.0 { large(size.exp()) } else { format!("10^{:.0}", (size / std::f64::consts::LN_10).floor()) };
+    format!("odds {odds} to 1 {side} it")
 }
 
 /// A large number for reading: `120`, `45 000`, `3 million`, `10^52`.
@@ -108,7 +119,7 @@ fn two_digits(value: f64) -> f64 {
 /// A number to three figures, never in 20 digits.
 pub fn figure(value: f64) -> String {
     let size = value.abs();
-    if value.is_nan() {
+    if !value.is_finite() {
         "?".into()
     } else if size >= 1e5 || (size < 1e-3 && size > 0.0) {
         format!("{value:.1e}")
@@ -125,12 +136,19 @@ pub fn figure(value: f64) -> String {
 
 /// `x = 0.0981 ± 0.0032 dps/g`, as many decimals as the sigma deserves: its two leading digits.
 pub fn parameter(value: &Value) -> String {
+    let [size, sigma] = size_and_sigma(value);
+    format!("{} = {size} ± {sigma} {}", value.name, value.unit)
+}
+
+/// A value and its sigma to the same decimals, `?` where there is no number.
+pub fn size_and_sigma(value: &Value) -> [String; 2] {
     let decimals = decimals(value.sigma);
-    format!("{} = {:.decimals$} ± {:.decimals$} {}", value.name, value.value, value.sigma, value.unit)
+    [value.value, value.sigma]
+        .map(|number| if number.abs() < 1e7 { format!("{number:.decimals$}") } else { figure(number) })
 }
 
 /// Decimals that show two digits of a sigma.
-pub fn decimals(sigma: f64) -> usize {
+fn decimals(sigma: f64) -> usize {
     if sigma <= 0.0 || !sigma.is_finite() {
         return 3;
     }
@@ -152,6 +170,33 @@ pub fn constancy(found: &Found) -> Option<String> {
     } else {
         "The halves of the recording give different numbers: it is not constant, or not quite this.".into()
     })
+}
+
+/// An unknown's shapes, each once.
+pub fn shapes(unknown: &Unknown) -> Vec<String> {
+    let mut shapes: Vec<String> = Vec::new();
+    for shape in &unknown.correlates_with {
+        if !shapes.contains(shape) {
+            shapes.push(shape.clone());
+        }
+    }
+    shapes
+}
+
+/// The same numbers on another recording. Nothing was fitted to them there, so that half the fall of the sum of squares is
+/// itself the ln of a Bayes factor: 3 are odds of 20 to 1.
+pub fn elsewhere(other: &OtherRecording) -> String {
+    let verdict = match other.gain {
+        gain if gain > 3.0 => "it holds there",
+        gain if gain < -3.0 => "it does NOT hold there",
+        _ => "that recording does not say",
+    };
+    format!(
+        "the same numbers leave {} instead of {} in {}: {verdict}",
+        figure(other.after),
+        figure(other.before),
+        other.file
+    )
 }
 
 /// What it is hard to tell from, and the experiment.
