@@ -1,12 +1,13 @@
 //! `tumble diagnose`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::output::Progress;
 use super::{Refusal, output};
-use crate::diagnose::{self, Options};
+use crate::diagnose::report::{self, Source};
+use crate::diagnose::{self, Options, transfer};
 use crate::recording::Recording;
 
 #[derive(Debug, Args)]
@@ -17,6 +18,9 @@ pub(super) struct Arguments {
     /// Print the contract's JSON object instead of a story
     #[arg(long)]
     json: bool,
+    /// Write report.html, one page with all pictures, and diagnosis.json into this folder
+    #[arg(long, value_name = "DIR")]
+    report: Option<PathBuf>,
     /// Effects that the search is not to know (for studies of what is unknown)
     #[arg(long, value_name = "ID")]
     without: Vec<String>,
@@ -29,10 +33,34 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
     let recordings = arguments.recordings.iter().map(|path| Recording::read(path)).collect::<Result<Vec<_>, _>>()?;
     let options = Options { without: arguments.without.clone(), seed: arguments.seed, conditions: None };
     let mut progress = Progress::new();
-    let outcome = diagnose::diagnose(&recordings[0], &options, &mut |what, share| progress.share(what, share));
-    drop(progress);
-    if arguments.json {
-        return Ok(output::print(&(serde_json::to_string(&outcome.diagnosis)? + "\n"))?);
+    let mut outcome = diagnose::diagnose(&recordings[0], &options, &mut |what, share| progress.share(what, share));
+    for (path, recording) in arguments.recordings.iter().zip(&recordings).skip(1) {
+        progress.share("the other recordings", 0.97);
+        transfer::try_on(&mut outcome.diagnosis, recording, &path.display().to_string(), &options);
     }
-    Ok(output::print(&format!("{:#?}\n", outcome.diagnosis))?)
+    drop(progress);
+    let (diagnosis, exhibits) = (&outcome.diagnosis, outcome.exhibits.as_ref());
+    let page = match &arguments.report {
+        Some(folder) => Some(
+            report::write(folder, &source(&arguments.recordings[0], &recordings[0]), diagnosis, exhibits)
+                .map_err(|error| Refusal::one(format!("{}: cannot be written: {error}", folder.display())))?,
+        ),
+        None => None,
+    };
+    if arguments.json {
+        return Ok(output::print(&(serde_json::to_string(diagnosis)? + "\n"))?);
+    }
+    if let Some(page) = page {
+        output::error(&format!("page: {}", page.display()));
+    }
+    Ok(output::print(&report::story(diagnosis, exhibits))?)
+}
+
+fn source(path: &Path, recording: &Recording) -> Source {
+    Source {
+        file: path.display().to_string(),
+        sensor: recording.metadata.sensor.clone(),
+        samples: recording.rows.len(),
+        length_s: recording.rows.last().map_or(0.0, |last| last.t_s - recording.origin_s()),
+    }
 }

@@ -2,7 +2,30 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+
+/// Stands for "none of any size" where JSON needs a number: beyond every size that occurs, and safe to compare with.
+/// (JSON has no infinity, `serde_json` would write null, and `f64::MAX` overflows where it is read in decimal.)
+pub const BEYOND: f64 = 1e99;
+
+/// A number that JSON can hold: what is infinite or more becomes ±[`BEYOND`], what is not a number 0.
+pub fn number(value: f64) -> f64 {
+    if value.is_nan() { 0.0 } else { value.clamp(-BEYOND, BEYOND) }
+}
+
+fn as_number<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(number(*value))
+}
+
+/// For a sigma or a limit: what is not a number says nothing, which is [`BEYOND`], not 0.
+fn as_bound<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(if value.is_nan() { BEYOND } else { number(*value) })
+}
+
+/// For a probability: what is not a number proves nothing, which is 1.
+fn as_probability<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(if value.is_nan() { 1.0 } else { value.clamp(0.0, 1.0) })
+}
 
 /// In one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -49,6 +72,7 @@ pub struct Found {
     /// As a formula.
     pub equation: String,
     /// ln of the Bayes factor against the model without it.
+    #[serde(serialize_with = "as_number")]
     pub evidence: f64,
     /// What explains nearly as much.
     pub runner_up: Option<RunnerUp>,
@@ -65,16 +89,38 @@ pub struct Found {
     pub typical: String,
     /// Mean squared residual of rows left out of the fit, by halves of every position, both ways; none for gates.
     pub held_out: Option<HeldOut>,
+    /// Tried with these very numbers on further recordings; empty where there were none or it does not carry over.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub other_recordings: Vec<OtherRecording>,
+}
+
+/// An effect on a recording that it was not found in, its parameters as found in the first.
+#[derive(Clone, Debug, Serialize)]
+pub struct OtherRecording {
+    /// As it was named.
+    pub file: String,
+    /// Mean squared whitened residual without this effect, the others that were found taken out.
+    #[serde(serialize_with = "as_number")]
+    pub before: f64,
+    /// With it.
+    #[serde(serialize_with = "as_number")]
+    pub after: f64,
+    /// Half the fall of the sum of squares: ln of a Bayes factor, as nothing is fitted.
+    #[serde(serialize_with = "as_number")]
+    pub gain: f64,
 }
 
 /// Before and after, on data that the parameters were not fitted to.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct HeldOut {
     /// Without the effect.
+    #[serde(serialize_with = "as_number")]
     pub before: f64,
     /// With it.
+    #[serde(serialize_with = "as_number")]
     pub after: f64,
     /// Probability of parameters as different between the halves, if they are constant (Chow).
+    #[serde(serialize_with = "as_probability")]
     pub constancy_p: f64,
 }
 
@@ -84,6 +130,7 @@ pub struct RunnerUp {
     /// As in the contract.
     pub id: String,
     /// By how much its evidence is less.
+    #[serde(serialize_with = "as_number")]
     pub gap: f64,
 }
 
@@ -93,8 +140,10 @@ pub struct Value {
     /// Of the parameter.
     pub name: String,
     /// In its unit.
+    #[serde(serialize_with = "as_number")]
     pub value: f64,
     /// One sigma.
+    #[serde(serialize_with = "as_bound")]
     pub sigma: f64,
     /// Of both.
     pub unit: String,
@@ -108,8 +157,10 @@ pub struct Place {
     /// Numbers as `tumble calibrate --json` has them.
     pub segments: Vec<usize>,
     /// By the recording's own stamps.
+    #[serde(serialize_with = "as_number")]
     pub start_s: f64,
     /// Likewise.
+    #[serde(serialize_with = "as_number")]
     pub end_s: f64,
 }
 
@@ -124,6 +175,7 @@ pub struct Unknown {
     /// Effects that it is like.
     pub resembles: Vec<String>,
     /// Of so much by chance.
+    #[serde(serialize_with = "as_probability")]
     pub p_value: f64,
 }
 
@@ -131,8 +183,10 @@ pub struct Unknown {
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Pair {
     /// Fitted to.
+    #[serde(serialize_with = "as_number")]
     pub train: f64,
     /// Left out of the fit.
+    #[serde(serialize_with = "as_number")]
     pub held_out: f64,
 }
 
@@ -151,8 +205,10 @@ pub struct FitReport {
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct ChannelFit {
     /// The nominal model.
+    #[serde(serialize_with = "as_number")]
     pub before: f64,
     /// With what was found.
+    #[serde(serialize_with = "as_number")]
     pub after: f64,
 }
 
@@ -161,7 +217,8 @@ pub struct ChannelFit {
 pub struct Limit {
     /// As in the contract.
     pub id: String,
-    /// Size found with 95 % certainty.
+    /// Size found with 95 % certainty; [`BEYOND`] in JSON where no size would be.
+    #[serde(serialize_with = "as_bound")]
     pub limit: f64,
     /// Of the limit.
     pub unit: String,

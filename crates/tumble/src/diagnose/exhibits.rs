@@ -41,6 +41,8 @@ pub struct Exhibits {
     pub before: Vec<f64>,
     /// What found effects leave.
     pub after: Vec<f64>,
+    /// Where the rows of `after` and of the regressions come from: a refit may keep others than before.
+    pub after_at: Vec<Address>,
     /// Of the recording.
     pub segments: Vec<Segment>,
     /// One a found effect.
@@ -79,6 +81,7 @@ pub fn exhibits(
         at: selection.before.at.clone(),
         before: selection.before.values.iter().copied().collect(),
         after,
+        after_at: selection.after.at.clone(),
         segments: segments(bench, origin_s),
         regressions,
         scores: selection

@@ -75,6 +75,7 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
         place,
         typical: card.typical.into(),
         held_out,
+        other_recordings: Vec::new(),
     };
     Finding { found, signal }
 }

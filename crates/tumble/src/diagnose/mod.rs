@@ -6,8 +6,10 @@ pub mod exhibits;
 pub mod findings;
 pub mod gates;
 pub mod prepare;
+pub mod report;
 mod run;
 pub mod search;
+pub mod transfer;
 pub mod twin;
 
 pub use run::{Options, Outcome, Progress, diagnose};

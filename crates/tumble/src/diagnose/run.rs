@@ -219,7 +219,7 @@ fn without_physics(gated: &Gated, why: String) -> Outcome {
 }
 
 /// Puts neighbours' means for samples that are no measurements, and axes and scales right.
-fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
+pub(super) fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
     for &index in &gated.repaired {
         if index == 0 || index + 1 >= samples.len() {
             continue;
