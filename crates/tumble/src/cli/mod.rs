@@ -2,6 +2,7 @@
 //!
 //! 0 done, 1 the input was refused (with reasons on standard error), 2 wrong usage (clap's).
 
+mod blind;
 mod calibrate;
 mod diagnose;
 mod effects;

@@ -23,6 +23,8 @@ enum Study {
     Limits(LimitsArguments),
     /// The paper's simulation by its method, its comparison method and ours, and the story of its mismatch
     Paper(PaperArguments),
+    /// Does the diagnosis find effects that it is not told of? Drawn and sealed, diagnosed from the CSV alone, unsealed, scored
+    Blind(super::blind::Arguments),
     /// Real recordings by several estimators, beside what their authors published
     Recordings(RecordingsArguments),
 }
@@ -77,6 +79,7 @@ struct LimitsArguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
     match &arguments.study {
+        Study::Blind(arguments) => super::blind::run(arguments),
         Study::Limits(arguments) => limits(arguments),
         Study::Paper(arguments) => paper(arguments),
         Study::Recordings(arguments) => recordings(arguments),

@@ -2,6 +2,7 @@
 //!
 //! A study is arithmetic over `tumble-sim`'s recordings and the device's own core; it neither prints nor parses.
 
+pub mod blind;
 pub mod bound;
 pub mod limits;
 pub mod navigation;
