@@ -81,7 +81,7 @@ fn known(word: &str) -> Result<String, String> {
     })
 }
 
-fn positive(word: &str) -> Result<f64, String> {
+pub(super) fn positive(word: &str) -> Result<f64, String> {
     word.parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite()).ok_or("a number above 0".to_owned())
 }
 

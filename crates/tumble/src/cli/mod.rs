@@ -7,6 +7,7 @@ mod calibrate;
 mod diagnose;
 mod effects;
 mod export;
+mod injection;
 mod output;
 mod reveal;
 mod serial;

@@ -25,6 +25,8 @@ enum Study {
     Paper(PaperArguments),
     /// Does the diagnosis find effects that it is not told of? Drawn and sealed, diagnosed from the CSV alone, unsealed, scored
     Blind(super::blind::Arguments),
+    /// Are known effects recovered that were added to real recordings?
+    Injection(super::injection::Arguments),
     /// Real recordings by several estimators, beside what their authors published
     Recordings(RecordingsArguments),
 }
@@ -80,6 +82,7 @@ struct LimitsArguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
     match &arguments.study {
         Study::Blind(arguments) => super::blind::run(arguments),
+        Study::Injection(arguments) => super::injection::run(arguments),
         Study::Limits(arguments) => limits(arguments),
         Study::Paper(arguments) => paper(arguments),
         Study::Recordings(arguments) => recordings(arguments),

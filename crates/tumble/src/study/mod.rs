@@ -4,6 +4,7 @@
 
 pub mod blind;
 pub mod bound;
+pub mod injection;
 pub mod limits;
 pub mod navigation;
 pub mod paper;

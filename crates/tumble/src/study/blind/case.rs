@@ -69,7 +69,7 @@ impl Setting {
     /// A name that tells nothing, the same for the same setting.
     pub fn name(&self, salt: &str) -> String {
         let Self { scheme, seed, by_hand, swing, noise } = self;
-        format!("{:016x}", hash(&format!("{salt}|{}|{seed}|{by_hand}|{swing}|{noise}", scheme.name())))
+        neutral(&format!("{salt}|{}|{seed}|{by_hand}|{swing}|{noise}", scheme.name()))
     }
 }
 
@@ -154,6 +154,11 @@ pub fn draw(options: &Options) -> Vec<Case> {
 pub fn drawn(id: &str, seed: u64) -> Option<Effect> {
     let kind = Effect::kinds().find(|kind| kind.id == id)?;
     Some(Effect::drawn(kind, &mut Rng::new(seed ^ hash(id), Purpose::Effect)))
+}
+
+/// A name that tells nothing.
+pub fn neutral(what: &str) -> String {
+    format!("{:016x}", hash(what))
 }
 
 /// FNV-1a, stirred at the end so that neighbours do not sort together.

@@ -4,13 +4,13 @@
 //! diagnoses each from the CSV alone; then the seals are opened and the answers scored.
 
 pub mod answer;
-mod ask;
+pub(super) mod ask;
 mod binomial;
-mod case;
+pub(super) mod case;
 mod make;
 pub mod mapping;
 pub mod score;
-mod size;
+pub(super) mod size;
 mod store;
 pub mod table;
 pub mod tally;
@@ -97,7 +97,7 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    fn file(path: &Path, error: std::io::Error) -> Self {
+    pub(super) fn file(path: &Path, error: std::io::Error) -> Self {
         Self::File { file: path.display().to_string(), error }
     }
 }
