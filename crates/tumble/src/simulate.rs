@@ -136,10 +136,14 @@ impl Plan {
 
 /// Runs a simulation and writes it down as a recorder would.
 pub(crate) fn make(config: &SchemeConfig) -> Result<Made, SimError> {
-    let made = config.record()?;
+    Ok(written(config, config.record()?))
+}
+
+/// Writes a simulation down as a recorder would.
+pub(crate) fn written(config: &SchemeConfig, made: tumble_sim::Recording) -> Made {
     let rows = made.samples.iter().map(row).collect();
     let recording = Recording { metadata: metadata(config, made.rate_hz), rows, notices: Vec::new() };
-    Ok(Made { recording, truth: made.truth })
+    Made { recording, truth: made.truth }
 }
 
 /// Says only what an honest recorder would know. A crooked box is not said to be square.

@@ -2,10 +2,12 @@
 //!
 //! 0 done, 1 the input was refused (with reasons on standard error), 2 wrong usage (clap's).
 
+mod blind;
 mod calibrate;
 mod diagnose;
 mod effects;
 mod export;
+mod injection;
 mod output;
 mod reveal;
 mod serial;

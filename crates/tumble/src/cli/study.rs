@@ -23,6 +23,10 @@ enum Study {
     Limits(LimitsArguments),
     /// The paper's simulation by its method, its comparison method and ours, and the story of its mismatch
     Paper(PaperArguments),
+    /// Does the diagnosis find effects that it is not told of? Drawn and sealed, diagnosed from the CSV alone, unsealed, scored
+    Blind(super::blind::Arguments),
+    /// Are known effects recovered that were added to real recordings?
+    Injection(super::injection::Arguments),
     /// Real recordings by several estimators, beside what their authors published
     Recordings(RecordingsArguments),
 }
@@ -80,6 +84,8 @@ struct LimitsArguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
     match &arguments.study {
+        Study::Blind(arguments) => super::blind::run(arguments),
+        Study::Injection(arguments) => super::injection::run(arguments),
         Study::Limits(arguments) => limits(arguments),
         Study::Paper(arguments) => paper(arguments),
         Study::Recordings(arguments) => recordings(arguments),

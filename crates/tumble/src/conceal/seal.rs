@@ -78,9 +78,14 @@ impl Seal {
 
     /// Opens the seal of a recording.
     pub fn open(recording: &Path) -> Result<Opened, SealError> {
-        let path = path_of(recording);
         let bytes = std::fs::read(recording).map_err(|error| at(recording, error))?;
-        let text = std::fs::read_to_string(&path).map_err(|error| at(&path, error))?;
+        let (hash, secret) = Self::secret(&path_of(recording))?;
+        Ok(Opened { secret, recording_unchanged: fnv(&bytes) == hash })
+    }
+
+    /// Opens a seal whose recording may be gone: the recording's hash, and the secret.
+    pub fn secret(path: &Path) -> Result<(u64, Value), SealError> {
+        let text = std::fs::read_to_string(path).map_err(|error| at(path, error))?;
         let damaged = |what| SealError::Damaged { file: path.display().to_string(), what };
         let mut lines = text.lines();
         if lines.next() != Some(FIRST_LINE) {
@@ -91,7 +96,7 @@ impl Seal {
         let hidden = lines.next().and_then(unhex).ok_or(damaged("its third line"))?;
         let plain: Vec<u8> = hidden.into_iter().zip(keystream(hash)).map(|(byte, key)| byte ^ key).collect();
         let secret = serde_json::from_slice(&plain).map_err(|_| damaged("what it hides"))?;
-        Ok(Opened { secret, recording_unchanged: fnv(&bytes) == hash })
+        Ok((hash, secret))
     }
 }
 

@@ -2,7 +2,9 @@
 //!
 //! A study is arithmetic over `tumble-sim`'s recordings and the device's own core; it neither prints nor parses.
 
+pub mod blind;
 pub mod bound;
+pub mod injection;
 pub mod limits;
 pub mod navigation;
 pub mod paper;
