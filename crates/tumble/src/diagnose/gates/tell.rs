@@ -30,6 +30,7 @@ pub fn found(card: &Card, evidence: f64, parameters: Vec<Value>, place: Place) -
         place,
         typical: card.typical.into(),
         held_out: None,
+        other_recordings: Vec::new(),
     }
 }
 
