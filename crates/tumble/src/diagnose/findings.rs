@@ -14,6 +14,8 @@ use super::twin::rows::{CHANNELS, Rows};
 pub const TIE: f64 = 3.0;
 /// Reported numbers are freed of the prior: its widths are taken this much larger.
 const FREE: f64 = 10.0;
+/// An effect that shows almost only in one half of the rows, such as one turn's end, cannot be tried on the other.
+const LEAST_HALF: f64 = 0.05;
 /// A channel is named where at least this share of an effect's signal lies.
 const SHARE: f64 = 0.15;
 
@@ -62,7 +64,7 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
             .collect::<Vec<_>>(),
     );
     let runner_up = rivals.first().map(|rival| RunnerUp { id: rival.0.into(), gap: rival.1 });
-    let held_out = walk.is_none().then(|| held_out(bench, &selection.after, k));
+    let held_out = if walk.is_none() { held_out(bench, &selection.after, k) } else { None };
     let found = Found {
         id: card.id.into(),
         name: card.name.into(),
@@ -239,12 +241,17 @@ fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static str) -
 }
 
 /// Halves of every position, both ways.
-fn held_out(bench: &Bench, rows: &Rows, k: usize) -> HeldOut {
+fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let count = parameters(bench, k);
     let halves = [false, true].map(|late| Ledger::new(rows, |at| at.late == late));
     let all = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
     let taken = DVector::from_column_slice(&bench.accepted[k].taken);
+    let own: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|term| term.column).collect();
+    let [early, late] = halves.each_ref().map(|half| half.gram(&all.scales, &own, &own).trace());
+    if early.min(late) < LEAST_HALF * early.max(late) {
+        return None;
+    }
     let mut sums = [0.0; 2];
     let mut fits = Vec::new();
     for (late, ledger) in [false, true].into_iter().zip(&halves) {
@@ -266,7 +273,7 @@ fn held_out(bench: &Bench, rows: &Rows, k: usize) -> HeldOut {
         fits.push((own, covariance));
     }
     let count_rows = rows.at.len() as f64;
-    HeldOut { before: sums[0] / count_rows, after: sums[1] / count_rows, constancy_p: constancy(&fits) }
+    Some(HeldOut { before: sums[0] / count_rows, after: sums[1] / count_rows, constancy_p: constancy(&fits) })
 }
 
 /// Rows less what the accepted effects explain, but for one.

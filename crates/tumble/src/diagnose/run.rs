@@ -88,6 +88,8 @@ struct Judged {
     named: Vec<Finding>,
     demoted: Vec<Finding>,
     unknown: bool,
+    /// What improves only on the data it was fitted to.
+    dropped: Vec<String>,
     /// Shapes that explain better than a name did.
     better: Vec<(String, f64)>,
     p_value: f64,
@@ -99,6 +101,7 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         named: Vec::new(),
         demoted: Vec::new(),
         unknown: leftover.is_real(),
+        dropped: Vec::new(),
         better: Vec::new(),
         p_value: leftover.p_value(),
     };
@@ -107,6 +110,10 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
             continue;
         };
+        if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
+            judged.dropped.push(finding.found.id.clone());
+            continue;
+        }
         let shape = shape_instead(bench, selection, k);
         let clear = selection.evidence - (shape.base + shape.evidence);
         if clear < -TIE {
@@ -174,6 +181,7 @@ fn assemble(
         }
     });
     let poses = poses(&bench.twin);
+    let dropped = judged.dropped;
     let mut reasons = Vec::new();
     let verdict = match (&unknown, effects.is_empty()) {
         (Some(_), _) => Verdict::UnknownEffect,
@@ -187,6 +195,11 @@ fn assemble(
              scale, axes and gravity's influence can show."
         ));
     }
+    reasons.extend(
+        dropped.iter().map(|id| {
+            format!("{id} would explain the data it is fitted to, but not the half left out: it is not named.")
+        }),
+    );
     if bench.twin.noise.facet_sigma_rad.is_none() && conditions.faces == BoxFaces::Unknown {
         reasons.push("The box is not stated to be square, so the table's angle was not tested.".into());
     }

@@ -3,7 +3,7 @@
 use super::{Card, DPS, Effect, Model, gyro_axes};
 use crate::diagnose::twin::Twin;
 
-/// Width over which the sign turns, rad/s: the noise of a sample.
+/// Width over which the sign turns, rad/s: above the noise of a sixth of a second.
 const SOFT: f64 = 0.1 * DPS;
 
 const CARD: Card = Card {
@@ -20,8 +20,11 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
+    // By the smoothed rate: a sample's own noise in the regressor would pass for an effect that takes noise away.
+    let sign = |rate: f64| (rate / SOFT).tanh();
     // The zone may lie about the sensor's own zero, or, where a driver takes the bias off first, about rest.
-    let about_zero = gyro_axes("dps", 0.2, |axis, moment| -DPS * (moment.raw_rate[axis] / SOFT).tanh());
-    let about_rest = gyro_axes("dps", 0.2, |axis, moment| -DPS * (moment.rate[axis] / SOFT).tanh());
-    Model::Shift(vec![about_zero.at_every_sample(), about_rest.at_every_sample()])
+    let about_zero =
+        gyro_axes("dps", 0.2, move |axis, moment| -DPS * sign(moment.zero[axis] + moment.smooth_rate[axis]));
+    let about_rest = gyro_axes("dps", 0.2, move |axis, moment| -DPS * sign(moment.smooth_rate[axis]));
+    Model::Shift(vec![about_zero, about_rest])
 }

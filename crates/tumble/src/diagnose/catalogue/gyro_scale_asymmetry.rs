@@ -17,6 +17,6 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
-    let variant = gyro_axes("ppm", 1000.0, |axis, moment| 0.5e-6 * moment.rate[axis].abs());
+    let variant = gyro_axes("ppm", 1000.0, |axis, moment| 0.5e-6 * moment.smooth_rate[axis].abs());
     Model::Shift(vec![variant.at_every_sample()])
 }

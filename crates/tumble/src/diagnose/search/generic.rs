@@ -87,13 +87,13 @@ fn cubes(what: &'static str, value: fn(&Moment) -> Vector3<f64>) -> Shapes {
 }
 
 fn sizes() -> Shapes {
-    let mut shapes: Shapes =
-        (0..3).map(|i| (format!("|w_{}|", AXES[i]), Box::new(move |m: &Moment| m.rate[i].abs()) as Shape)).collect();
+    let mut shapes: Shapes = (0..3)
+        .map(|i| (format!("|w_{}|", AXES[i]), Box::new(move |m: &Moment| m.smooth_rate[i].abs()) as Shape))
+        .collect();
     shapes.push(("|w|".into(), Box::new(|m: &Moment| m.rate.norm())));
-    shapes.extend(
-        (0..3)
-            .map(|i| (format!("sign(w_{})", AXES[i]), Box::new(move |m: &Moment| (m.rate[i] / 0.02).tanh()) as Shape)),
-    );
+    shapes.extend((0..3).map(|i| {
+        (format!("sign(w_{})", AXES[i]), Box::new(move |m: &Moment| (m.smooth_rate[i] / 0.02).tanh()) as Shape)
+    }));
     shapes
 }
 

@@ -56,12 +56,16 @@ pub struct Moment {
     pub attitude: UnitQuaternion<f64>,
     /// True rate by the nominal, rad/s, frame b.
     pub rate: Vector3<f64>,
+    /// Its mean over a sixth of a second: for what depends on its sign, which noise would turn.
+    pub smooth_rate: Vector3<f64>,
     /// Its derivative, rad/s².
     pub acceleration: Vector3<f64>,
     /// True specific force by the nominal, m/s², frame b: in rests and turns gravity alone, in the hand what was measured.
     pub force: Vector3<f64>,
     /// Its derivative, m/s³: `f × ω` where gravity alone acts.
     pub jerk: Vector3<f64>,
+    /// The gyroscope's bias by the nominal, rad/s.
+    pub zero: Vector3<f64>,
     /// The reading, rad/s, bias and all.
     pub raw_rate: Vector3<f64>,
     /// The reading, m/s².
@@ -128,7 +132,7 @@ struct Walker<'a> {
     nominal: &'a Nominal,
     gravity_mps2: f64,
     rates: Vec<Vector3<f64>>,
-    slopes: Vec<Vector3<f64>>,
+    slopes: Vec<(Vector3<f64>, Vector3<f64>)>,
     mean_degc: f64,
     attitude: UnitQuaternion<f64>,
     moments: Vec<Moment>,
@@ -205,7 +209,9 @@ impl Walker<'_> {
             t_s: raw.t_s,
             attitude: self.attitude,
             rate: if solid { Vector3::zeros() } else { rate },
-            acceleration: if solid { Vector3::zeros() } else { self.slopes[index] },
+            smooth_rate: if solid { Vector3::zeros() } else { self.slopes[index].0 },
+            acceleration: if solid { Vector3::zeros() } else { self.slopes[index].1 },
+            zero: self.nominal.gyro_bias,
             force,
             jerk,
             raw_rate: raw.rate,
@@ -219,8 +225,8 @@ impl Walker<'_> {
     }
 }
 
-/// Least-squares slope of the rate over `SLOPE_S` to either side.
-fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+/// Mean and least-squares slope of the rate over `SLOPE_S` to either side.
+fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let (mut first, mut end) = (0, 0);
     samples
         .iter()
@@ -232,13 +238,15 @@ fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
                 end += 1;
             }
             let mean_s = samples[first..end].iter().map(|raw| raw.t_s).sum::<f64>() / (end - first) as f64;
-            let (mut moment, mut inertia) = (Vector3::zeros(), 0.0);
+            let (mut sum, mut moment, mut inertia) = (Vector3::zeros(), Vector3::zeros(), 0.0);
             for (raw, rate) in samples[first..end].iter().zip(&rates[first..end]) {
                 let lever_s = raw.t_s - mean_s;
+                sum += rate;
                 moment += rate * lever_s;
                 inertia += lever_s * lever_s;
             }
-            if inertia > 0.0 { moment / inertia } else { Vector3::zeros() }
+            let mean = sum / (end - first) as f64;
+            (mean, if inertia > 0.0 { moment / inertia } else { Vector3::zeros() })
         })
         .collect()
 }
