@@ -65,10 +65,10 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
     };
     let limit = |k: usize| Limit {
         id: format!("an_effect_of_number_{k}"),
-        limit: if k % 2 == 0 { 0.01 } else { f64::MAX },
+        limit: if k.is_multiple_of(2) { 0.01 } else { f64::MAX },
         unit: "dps/g".into(),
-        testable: k % 2 == 0,
-        why: if k % 2 == 0 { String::new() } else { "the temperature did not change & so on".into() },
+        testable: k.is_multiple_of(2),
+        why: if k.is_multiple_of(2) { String::new() } else { "the temperature did not change & so on".into() },
     };
     Diagnosis {
         format: "tumble-diagnosis",
