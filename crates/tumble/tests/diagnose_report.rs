@@ -65,10 +65,10 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
     };
     let limit = |k: usize| Limit {
         id: format!("an_effect_of_number_{k}"),
-        limit: if k % 2 == 0 { 0.01 } else { f64::MAX },
+        limit: if k.is_multiple_of(2) { 0.01 } else { f64::MAX },
         unit: "dps/g".into(),
-        testable: k % 2 == 0,
-        why: if k % 2 == 0 { String::new() } else { "the temperature did not change & so on".into() },
+        testable: k.is_multiple_of(2),
+        why: if k.is_multiple_of(2) { String::new() } else { "the temperature did not change & so on".into() },
     };
     Diagnosis {
         format: "tumble-diagnosis",
@@ -135,9 +135,10 @@ fn check_page(page: &str) {
         assert_eq!(inside.matches('"').count() % 2, 0, "quotes in <{inside}>");
     }
     assert!(open.is_empty(), "left open: {open:?}");
-    for word in ["http:", "https:", "<script", "src=", "href=", "url(", "@import", "NaN", ">inf<", " inf"] {
+    for word in ["http:", "https:", "<script", "src=", "href=", "url(", "@import", "NaN"] {
         assert!(!page.contains(word), "{word} in the page");
     }
+    assert!(page.split(|c: char| !c.is_alphanumeric()).all(|word| word != "inf"), "infinity in the page");
 }
 
 fn check_story(story: &str) {

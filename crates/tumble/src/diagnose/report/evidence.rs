@@ -40,7 +40,12 @@ pub fn picture(exhibits: &Exhibits, found: &[String]) -> Option<String> {
         picture.text("small", Anchor::End, (LABELS - 8.0, y + 13.0), id);
         picture.bar(class, x(0.0), y + 3.0, x(*gain) - x(0.0), ROW - 6.0);
         // In a column of their own, where no line runs through them.
-        picture.text("small", Anchor::End, (LABELS + CHART + 62.0, y + 13.0), &format!("{gain:.1}"));
+        picture.text(
+            "small",
+            Anchor::End,
+            (LABELS + CHART + 62.0, y + 13.0),
+            &format!("{:.1}", (10.0 * gain).round() / 10.0 + 0.0),
+        );
     }
     let limit = x(exhibits.threshold);
     picture.line("limit", (limit, TOP - 8.0), (limit, bottom));

@@ -48,6 +48,13 @@ pub fn story(diagnosis: &Diagnosis, exhibits: Option<&Exhibits>) -> String {
     let full = if alone { IN_FULL } else { 1 };
     for (k, found) in diagnosis.effects.iter().take(full).enumerate() {
         effect(&mut story, found, exhibits, k == 0 && alone);
+        // A second effect takes the line of a second recording.
+        let others = if diagnosis.effects.len() == 1 { 2 } else { 1 };
+        found
+            .other_recordings
+            .iter()
+            .take(others)
+            .for_each(|other| story.say("elsewhere", &words::elsewhere(other), 1));
     }
     let rest: Vec<&str> = diagnosis.effects.iter().skip(full).map(|found| found.id.as_str()).collect();
     if !rest.is_empty() {
@@ -82,7 +89,7 @@ fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-/// Eight lines at most, or four.
+/// Six lines at most, or four.
 fn effect(story: &mut Story, found: &Found, exhibits: Option<&Exhibits>, full: bool) {
     story.say("where", &place(&found.place, exhibits), 1);
     story.say("what", &format!("{}: {}; {}", found.id, found.equation, numbers(found)), if full { 2 } else { 1 });
@@ -95,9 +102,6 @@ fn effect(story: &mut Story, found: &Found, exhibits: Option<&Exhibits>, full: b
         story.say("how sure", &sure, 1);
         if let Some(ties) = words::ties(found) {
             story.say("tied", &ties, 2);
-        }
-        for other in found.other_recordings.iter().take(2) {
-            story.say("elsewhere", &words::elsewhere(other), 1);
         }
     } else {
         let tied = if found.tied_with.is_empty() { "" } else { "; tied with " };

@@ -187,16 +187,14 @@ pub fn shapes(unknown: &Unknown) -> Vec<String> {
 /// itself the ln of a Bayes factor: 3 are odds of 20 to 1.
 pub fn elsewhere(other: &OtherRecording) -> String {
     let verdict = match other.gain {
-        gain if gain > 3.0 => "it holds there",
-        gain if gain < -3.0 => "it does NOT hold there",
-        _ => "that recording does not say",
+        gain if gain > 3.0 => "it holds in",
+        gain if gain < -3.0 => "it does NOT hold in",
+        _ => "not to be told from",
     };
-    format!(
-        "the same numbers leave {} instead of {} in {}: {verdict}",
-        figure(other.after),
-        figure(other.before),
-        other.file
-    )
+    let file =
+        std::path::Path::new(&other.file).file_name().map_or(other.file.as_str().into(), |name| name.to_string_lossy());
+    let (before, after) = (figure(other.before), figure(other.after));
+    format!("{verdict} {file}: {before} -> {after} with the same numbers (ln Bayes {:+.1})", other.gain)
 }
 
 /// What it is hard to tell from, and the experiment.
