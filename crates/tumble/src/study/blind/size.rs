@@ -25,6 +25,9 @@ pub struct Size {
     pub magnitude: f64,
     /// The detection limit in that unit, where it made the size.
     pub limit: Option<f64>,
+    /// The same as the diagnosis states it, in its own unit.
+    #[serde(default)]
+    pub stated: Option<f64>,
     /// `limit`, or why it was drawn from the effect's own range.
     pub by: String,
 }
@@ -40,7 +43,7 @@ pub fn size(id: &str, at: f64, twin: Option<&Answer>, seed: u64) -> Option<Size>
     let kind = Effect::kinds().find(|kind| kind.id == id)?;
     let by_range = |why: &str| {
         let magnitude = case::drawn(id, seed)?.magnitude();
-        Some(Size { id: id.into(), magnitude, limit: None, by: format!("its own range: {why}") })
+        Some(Size { id: id.into(), magnitude, limit: None, stated: None, by: format!("its own range: {why}") })
     };
     if DRAWN.contains(&id) || matches!(kind.values, Values::Whole(..)) {
         return by_range("no multiple of a limit");
@@ -56,7 +59,7 @@ pub fn size(id: &str, at: f64, twin: Option<&Answer>, seed: u64) -> Option<Size>
     let (low, high) = kind.values.bounds();
     let magnitude = (present + at * unit).clamp(low, high);
     let by = if limit.testable { "limit" } else { "limit, beyond usual sizes" };
-    Some(Size { id: id.into(), magnitude, limit: Some(unit), by: by.into() })
+    Some(Size { id: id.into(), magnitude, limit: Some(unit), stated: limit.limit, by: by.into() })
 }
 
 /// A limit in the simulation's unit.

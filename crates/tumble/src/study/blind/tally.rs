@@ -78,6 +78,8 @@ pub struct Row {
     pub not_compared: Option<&'static str>,
     /// Median detection limit over the median sigma of its parameters.
     pub limit_sigmas: Option<f64>,
+    /// Names in the widest tie that was counted as correct; 0 without any.
+    pub widest_tie: usize,
 }
 
 /// Times of the diagnoses, s.
@@ -204,28 +206,28 @@ fn row(id: String, scored: &[&Scored]) -> Row {
         rms_sigmas: mean(&|sigmas| sigmas * sigmas).map(f64::sqrt),
         not_compared: id.split(" + ").find_map(mapping::why_not),
         limit_sigmas: limit_sigmas(scored),
+        widest_tie: widest_tie(scored),
         outcomes,
         id,
     }
 }
 
-/// The limit at which a recording was made over the median sigma of what was found there, both in the simulation's unit by
-/// the ratio of what is true to what it is called.
+/// The limit that the twin stated over the median sigma of what was found, both in the diagnosis' unit.
 fn limit_sigmas(scored: &[&Scored]) -> Option<f64> {
     let ratio = |one: &&Scored| {
         let [size] = one.hidden.sizes.as_slice() else { return None };
-        let (_, truth) = one.hidden.effects.first()?;
-        // One number says how a unit of the simulation is written by the diagnosis.
-        let unit = one.pairings.iter().find_map(|pairing| {
-            let same = |one: &&mapping::True| one.name.ends_with(&format!("_{}", pairing.name));
-            let own = truth.iter().find(same).or_else(|| truth.first())?;
-            (own.value != 0.0 && pairing.truth != 0.0).then(|| pairing.truth / own.value)
-        })?;
         let sigmas = one.pairings.iter().filter(|pairing| pairing.name != "at" && pairing.name != "tau");
         let sigma = median(sigmas.map(|pairing| pairing.sigma).collect())?;
-        Some(size.limit? * unit.abs() / sigma)
+        Some(size.stated? / sigma)
     };
     median(scored.iter().filter_map(ratio).collect())
+}
+
+/// The most names that a correct tie had: one of eighteen is no answer.
+fn widest_tie(scored: &[&Scored]) -> usize {
+    let ties = scored.iter().filter(|one| one.outcome == Outcome::Tie);
+    let named = ties.filter_map(|one| one.asked.answer.as_ref()).flat_map(|answer| &answer.effects);
+    named.map(|named| 1 + named.tied_with.len()).max().unwrap_or(0)
 }
 
 fn clean(scored: &[&Scored]) -> Vec<Clean> {
