@@ -105,7 +105,8 @@ pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
         .map(|(family, members, gain)| {
             let family = &bench.families[*family].0;
             let mut shapes: Vec<&str> = members.iter().map(|member| family.members[*member].1.as_str()).collect();
-            shapes.dedup();
+            let mut seen = std::collections::BTreeSet::new();
+            shapes.retain(|shape| seen.insert(*shape));
             shapes.truncate(3);
             let triad = if family.gyro { "gyroscope" } else { "accelerometer" };
             (format!("{}: {} ({})", family.name, shapes.join(", "), triad), *gain)

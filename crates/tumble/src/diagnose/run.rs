@@ -22,6 +22,9 @@ const LEAST_POSES: usize = 4;
 /// Directions of gravity less than this apart are one pose, rad (30°).
 const POSE_RAD: f64 = 0.52;
 
+/// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
+const BEYOND_UNKNOWN: f64 = 0.5;
+
 /// What may be asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -73,6 +76,12 @@ pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progres
     without.extend(gated.imitated.iter().cloned());
     let mut bench = Bench::new(prepared.twin, &without);
     let selection = select::select(&mut bench, options.seed, progress);
+    if !selection.evidence.is_finite() {
+        return without_physics(
+            &gated,
+            "The fit broke down: the samples contradict each other by more than any noise.".into(),
+        );
+    }
     progress("what is left", 0.85);
     let leftover = unknown::weigh(&mut bench, None);
     let found = findings::findings(&mut bench, &selection, origin_s);
@@ -116,12 +125,14 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         }
         let shape = shape_instead(bench, selection, k);
         let clear = selection.evidence - (shape.base + shape.evidence);
+        // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
+        let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
         if clear < -TIE {
             judged.unknown = true;
             judged.p_value = judged.p_value.min((clear).exp());
             judged.better.extend(exhibits::correlates(bench, &shape));
             judged.demoted.push(finding);
-        } else if leftover.is_real() && clear < TIE {
+        } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
             judged.demoted.push(finding);
         } else {
             judged.named.push(finding);

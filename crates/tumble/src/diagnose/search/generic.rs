@@ -53,7 +53,44 @@ pub fn families(twin: &Twin) -> Vec<Family> {
         }
     }
     families.push(previous_face(twin));
+    families.extend([true, false].map(|gyro| memory_of_motion(twin, gyro)));
     families
+}
+
+/// Readings that remember motion: `∫ e^(−(t−s)/τ) ω(s) ds`, its size, and the like of its square.
+fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
+    let mut shapes: Vec<(String, std::sync::Arc<Vec<f64>>)> = Vec::new();
+    for tau_s in [2.0, 8.0, 30.0] {
+        for (axis, name) in ["x", "y", "z", "all"].into_iter().enumerate() {
+            let value = |rate: &Vector3<f64>| if axis < 3 { rate[axis] } else { rate.norm() };
+            let (mut sum, mut last_s) = (0.0, 0.0);
+            let filtered = twin
+                .trajectory
+                .moments
+                .iter()
+                .map(|moment| {
+                    let dt_s = moment.t_s - last_s;
+                    last_s = moment.t_s;
+                    sum = sum * (-dt_s / tau_s).exp() + value(&moment.smooth_rate) * dt_s;
+                    sum
+                })
+                .collect();
+            shapes.push((format!("memory of w_{name} over {tau_s} s"), std::sync::Arc::new(filtered)));
+        }
+    }
+    let first = if gyro { 0 } else { 3 };
+    let unit = if gyro { DPS } else { 1e-3 * G };
+    let (mut members, mut influences) = (Vec::new(), Vec::new());
+    for channel in first..first + 3 {
+        for (what, values) in &shapes {
+            let values = values.clone();
+            members.push((channel, what.clone()));
+            influences.push(reading(move |moment| {
+                Push::channel(channel, unit * values.get(moment.index).copied().unwrap_or(0.0))
+            }));
+        }
+    }
+    Family { name: "memory of motion".into(), gyro, members, influences }
 }
 
 fn family(name: &str, gyro: bool, shapes: impl Fn() -> Shapes) -> Family {

@@ -37,6 +37,8 @@ pub struct Prior {
     pub earth_sigma: f64,
 }
 
+/// A table leans by less than this, rad (6°), and so does what lies on it.
+const LYING_RAD: f64 = 0.105;
 /// Prior of a correction's element (`docs/method.md`, "Priors and observability").
 const CORRECTION_SIGMA: f64 = 0.06;
 const GYRO_BIAS_SIGMA: f64 = 0.1;
@@ -127,9 +129,25 @@ impl Twin {
             force_scale: Vec::new(),
             prior,
         };
+        if !twin.lies_on_a_table() {
+            twin.noise.facet_sigma_rad = None;
+        }
         twin.force_scale = scatter::force_scales(&twin);
         twin.fit();
         twin
+    }
+
+    /// Do the rests lie on faces, as against poses that come near one by chance? A random direction is within `LYING_RAD`
+    /// of one of six in 1 case of 80.
+    fn lies_on_a_table(&self) -> bool {
+        let (mut lying, mut all) = (0, 0);
+        for stretch in self.stretches.iter().filter(|stretch| stretch.is_rest()) {
+            let force = self.trajectory.moments[stretch.samples.start].force;
+            let largest = force.amax() / force.norm();
+            all += 1;
+            lying += usize::from(largest > LYING_RAD.cos());
+        }
+        5 * lying >= 4 * all
     }
 
     /// Gauss–Newton from where it stands.

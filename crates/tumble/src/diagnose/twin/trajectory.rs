@@ -50,6 +50,8 @@ impl Nominal {
 /// One instant, as a candidate sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment {
+    /// Of the sample.
+    pub index: usize,
     /// Since the first sample, s.
     pub t_s: f64,
     /// `rotation_n_from_b`.
@@ -206,6 +208,7 @@ impl Walker<'_> {
         let warmth_degc = raw.temperature_degc - self.mean_degc;
         let solid = matches!(stretch.deed, Deed::Rest { .. });
         Moment {
+            index,
             t_s: raw.t_s,
             attitude: self.attitude,
             rate: if solid { Vector3::zeros() } else { rate },
