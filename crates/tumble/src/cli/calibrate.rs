@@ -10,6 +10,7 @@ use tumble_core::sample::Ranges;
 use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
 use crate::calibrate::{self, Method, Session};
+use crate::diagnose::carry;
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
 
@@ -69,6 +70,9 @@ pub(super) struct Arguments {
     /// How turns end, instead of what the recording states
     #[arg(long, value_enum)]
     turns: Option<TurnsWord>,
+    /// Carry this effect too (see `tumble diagnose`): it is fitted and taken out of the readings first
+    #[arg(long, value_name = "ID")]
+    with: Vec<String>,
     /// First round every reading to the board's counts (±2000 °/s, ±16 g), as a replay on the emulated board does
     #[arg(long)]
     board_counts: bool,
@@ -89,7 +93,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
 
 fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal> {
     let inference = Inference::of(recording);
-    let readings = readings(arguments, recording, &inference);
+    let mut readings = readings(arguments, recording, &inference);
+    let mut carried = Vec::new();
+    if !arguments.with.is_empty() {
+        let conditions = conditions(arguments, recording);
+        (readings, carried) = carry::carry(recording, conditions, &arguments.with).map_err(Refusal::one)?;
+    }
     let session = Session {
         readings: &readings,
         origin_s: recording.origin_s(),
@@ -99,7 +108,7 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
     let mut progress = Progress::new();
     let outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
     drop(progress);
-    let report = Report::of(&outcome);
+    let report = Report::of(&outcome).carrying(carried);
     if arguments.json {
         print_json(&report)?;
     } else {

@@ -154,7 +154,8 @@ fn freed(terms: Vec<Term>) -> Vec<Term> {
     terms.into_iter().map(|term| Term { width: FREE * term.width, ..term }).collect()
 }
 
-fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (Vec<Value>, Vec<f64>) {
+/// An accepted effect's numbers, freed of the prior, and its share in every row.
+pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (Vec<Value>, Vec<f64>) {
     let fit = ledger.fit(&freed(bench.accepted_terms(None)));
     let total = total(bench, &fit, k);
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();

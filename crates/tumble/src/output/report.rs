@@ -5,6 +5,7 @@ use tumble_core::calibration::{Calibration, Frame, TriadEstimate, Verdict};
 use tumble_core::{DEGREE_RAD, STANDARD_GRAVITY_MPS2};
 
 use crate::calibrate::Outcome;
+use crate::diagnose::carry::{Carried, g_sensitivity};
 
 /// x, y, z.
 pub type Vector = [f32; 3];
@@ -38,6 +39,21 @@ pub struct Report {
     pub fit: Option<FitReport>,
     /// Mean die temperature of the session, °C; null where the recording has none.
     pub temperature_degc: Option<f32>,
+    /// Effects that the calibration carries besides, to be taken off the raw readings first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub with: Vec<Carried>,
+}
+
+impl Report {
+    /// The same with effects that were taken out of the readings before; a rejected calibration gets none.
+    #[must_use]
+    pub fn carrying(mut self, carried: Vec<Carried>) -> Self {
+        if let Some(gyroscope) = &mut self.gyroscope {
+            gyroscope.g_sensitivity_rad_s_per_mps2 = g_sensitivity(&carried);
+            self.with = carried;
+        }
+        self
+    }
 }
 
 /// The accelerometer's numbers.
@@ -68,7 +84,7 @@ pub struct GyroscopeReport {
     pub correction_sigma: Matrix,
     /// What the recording determines.
     pub observable: [[bool; 3]; 3],
-    /// Not estimated yet: null.
+    /// Where it was asked for (`--with gyro_g_sensitivity`), else null.
     pub g_sensitivity_rad_s_per_mps2: Option<[[f32; 3]; 3]>,
 }
 
@@ -131,6 +147,7 @@ impl Report {
             segments: outcome.segments.clone(),
             fit: outcome.calibration.as_ref().and_then(fit),
             temperature_degc: usable.map(|c| c.temperature_degc).filter(|t| t.is_finite()),
+            with: Vec::new(),
             ..Self::refused(Vec::new())
         }
     }
@@ -150,6 +167,7 @@ impl Report {
             segments: Vec::new(),
             fit: None,
             temperature_degc: None,
+            with: Vec::new(),
         }
     }
 

@@ -73,6 +73,12 @@ fn write_report(to: &mut String, report: &Report) -> fmt::Result {
         bias(to, "gyroscope bias, °/s", &gyro.bias_rad_s, &gyro.bias_sigma_rad_s, 1.0 / DEGREE_RAD)?;
         correction(to, "gyroscope", &gyro.correction, &gyro.correction_sigma)?;
     }
+    for carried in &report.with {
+        writeln!(to, "carried besides: {}: {}", carried.id, carried.equation)?;
+        for value in &carried.parameters {
+            writeln!(to, "    {:<26}{:>12.5} ± {:.5} {}", value.name, value.value, value.sigma, value.unit)?;
+        }
+    }
     write_segments(to, report)?;
     if let Some(fit) = &report.fit {
         writeln!(

@@ -61,8 +61,10 @@ pub fn families(twin: &Twin) -> Vec<Family> {
 fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
     let mut shapes: Vec<(String, std::sync::Arc<Vec<f64>>)> = Vec::new();
     for tau_s in [2.0, 8.0, 30.0] {
-        for (axis, name) in ["x", "y", "z", "all"].into_iter().enumerate() {
-            let value = |rate: &Vector3<f64>| if axis < 3 { rate[axis] } else { rate.norm() };
+        for kind in 0..6 {
+            let (axis, unsigned) = (kind % 3, kind >= 3);
+            let value = move |rate: &Vector3<f64>| if unsigned { rate[axis].abs() } else { rate[axis] };
+            let name = if unsigned { format!("|w_{}|", AXES[axis]) } else { format!("w_{}", AXES[axis]) };
             let (mut sum, mut last_s) = (0.0, 0.0);
             let filtered = twin
                 .trajectory
@@ -75,7 +77,7 @@ fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
                     sum
                 })
                 .collect();
-            shapes.push((format!("memory of w_{name} over {tau_s} s"), std::sync::Arc::new(filtered)));
+            shapes.push((format!("memory of {name} over {tau_s} s"), std::sync::Arc::new(filtered)));
         }
     }
     let first = if gyro { 0 } else { 3 };

@@ -79,6 +79,12 @@ fn blocks(bench: &Bench) -> Vec<Block> {
         for shape in 0..per_channel {
             add((0..channels.len()).map(|k| k * per_channel + shape).collect());
         }
+        // Shapes come in threes, one an axis: each axis on its own channel.
+        if channels.len() == 3 {
+            for three in (0..per_channel / 3).map(|three| 3 * three) {
+                add((0..3).map(|k| k * per_channel + three + k).collect());
+            }
+        }
         if family.name == "slow oscillation" {
             for pair in 0..per_channel / 2 {
                 let both = |k: usize| [k * per_channel + 2 * pair, k * per_channel + 2 * pair + 1];

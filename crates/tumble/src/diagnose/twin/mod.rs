@@ -131,6 +131,11 @@ impl Twin {
         };
         if !twin.lies_on_a_table() {
             twin.noise.facet_sigma_rad = None;
+            // Nor does what looks like a turn happen on one: a hand's own accelerations are in it.
+            for stretch in twin.stretches.iter_mut().filter(|stretch| matches!(stretch.deed, Deed::Turn { .. })) {
+                stretch.deed = Deed::Move;
+            }
+            twin.trajectory = Trajectory::new(&twin.samples, &twin.stretches, &start, twin.gravity_mps2);
         }
         twin.force_scale = scatter::force_scales(&twin);
         twin.fit();
