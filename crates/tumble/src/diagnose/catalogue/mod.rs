@@ -64,6 +64,8 @@ pub struct Parameter {
     pub unit: &'static str,
     /// Prior's sigma in that unit: the typical size.
     pub width: f64,
+    /// Below zero it has no meaning.
+    pub positive: bool,
 }
 
 /// An effect with what is not linear in it held fixed.
@@ -133,7 +135,7 @@ pub const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// A parameter.
 pub fn parameter(name: impl Into<String>, unit: &'static str, width: f64) -> Parameter {
-    Parameter { name: name.into(), unit, width }
+    Parameter { name: name.into(), unit, width, positive: false }
 }
 
 /// A reading's influence from a closure.
@@ -160,6 +162,13 @@ pub fn accel_axes(
 }
 
 impl Variant {
+    /// The same with parameters that cannot be below zero.
+    #[must_use]
+    pub fn positive(mut self) -> Self {
+        self.parameters.iter_mut().for_each(|parameter| parameter.positive = true);
+        self
+    }
+
     /// The same, evaluated at every sample.
     #[must_use]
     pub fn at_every_sample(mut self) -> Self {

@@ -97,15 +97,19 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
             first.clone_from(&scores);
         }
         let Some(best) = scores.first().filter(|best| best.gain > threshold && round < MOST_EFFECTS) else { break };
-        accept(bench, best);
-        prune(bench, threshold);
+        if accept(bench, best, threshold) {
+            prune(bench, threshold);
+        }
     }
     let (noise, evidence) = settle_walks(bench);
     let after = bench.rows(noise);
     Selection { threshold, first, before, null_scales, null_noise, after, evidence }
 }
 
-fn accept(bench: &mut Bench, best: &Score) {
+/// Takes a candidate in, unless its non-linear refit does not hold what the linear score promised, or its numbers have no
+/// meaning: then it is out for good.
+fn accept(bench: &mut Bench, best: &Score, threshold: f64) -> bool {
+    let before = settle_walks(bench).1;
     let parameters = bench.candidates[best.candidate].variants.get(best.variant).map_or(0, |v| v.parameters.len());
     let Score { candidate, variant, widening, .. } = *best;
     bench.accepted.push(Accepted { candidate, variant, widening, taken: vec![0.0; parameters] });
@@ -118,6 +122,30 @@ fn accept(bench: &mut Bench, best: &Score) {
         }
     }
     bench.refit();
+    let (noise, after) = settle_walks(bench);
+    bench.twin.noise = noise;
+    if after - before > threshold.min(0.5 * best.gain) && is_meaningful(bench) {
+        return true;
+    }
+    bench.accepted.pop();
+    bench.candidates[candidate].variants.clear();
+    bench.candidates[candidate].walk = None;
+    bench.candidates[candidate].absent = Some("a full fit of it does not hold what the first look promised");
+    bench.refit();
+    false
+}
+
+/// Are the last one's numbers possible? What cannot be negative must not be so by three sigma.
+fn is_meaningful(bench: &mut Bench) -> bool {
+    let Some(last) = bench.accepted.last().cloned() else { return true };
+    let Some(placed) = bench.candidates[last.candidate].variants.get(last.variant).cloned() else { return true };
+    let terms = bench.accepted_terms(None);
+    let fit = bench.fit_alone(bench.twin.noise, &terms);
+    let first = terms.len() - placed.parameters.len();
+    placed.parameters.iter().enumerate().all(|(i, parameter)| {
+        let sigma = fit.covariance[(first + i, first + i)].sqrt();
+        !parameter.positive || fit.theta[first + i] + last.taken[i] > -3.0 * sigma
+    })
 }
 
 /// What no longer pays, given what came later, goes.
