@@ -48,7 +48,7 @@ fn gates(recording: &Recording) -> Gated {
 fn clean(seed: u64) -> (SchemeConfig, Metadata, i32) {
     let scheme = SCHEMES[(seed % 4) as usize];
     let mut config =
-        if seed % 3 == 0 { SchemeConfig::new(scheme, seed) } else { SchemeConfig::realistic(scheme, seed) };
+        if seed.is_multiple_of(3) { SchemeConfig::new(scheme, seed) } else { SchemeConfig::realistic(scheme, seed) };
     config = match seed / 4 % 6 {
         0 => config.with(Imperfection::Wobble(1.0)).with(Imperfection::ByHand(2.0)),
         1 => config.with(Imperfection::Clock(0.01)).with(Imperfection::Lever(0.05)),

@@ -1,6 +1,7 @@
 //! What the report's pictures are drawn from.
 
-use super::findings::{self, Finding};
+use super::findings::Finding;
+use super::held_out;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
@@ -68,7 +69,7 @@ pub fn exhibits(
     origin_s: f64,
 ) -> Exhibits {
     let (isolable, isolability) = isolability(bench, selection);
-    let after = findings::left(bench, &selection.after);
+    let after = held_out::left(bench, &selection.after);
     let regressions = findings
         .iter()
         .map(|finding| Regression {

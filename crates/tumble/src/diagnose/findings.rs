@@ -1,9 +1,10 @@
 //! From a finished search to the answer.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
-use super::diagnosis::{ChannelFit, FitReport, Found, HeldOut, Limit, Pair, Place, RunnerUp, Value};
-use super::search::bench::{Bench, HEALTHY};
+use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp, Value};
+use super::held_out;
+use super::search::bench::Bench;
 use super::search::ledger::{Fit, Ledger, Term};
 use super::search::select::{self, Score, Selection};
 use super::search::unknown::{self, ALIAS};
@@ -14,8 +15,6 @@ use super::twin::rows::{CHANNELS, Rows};
 pub const TIE: f64 = 3.0;
 /// Reported numbers are freed of the prior: its widths are taken this much larger.
 const FREE: f64 = 10.0;
-/// An effect that shows almost only in one half of the rows, such as one turn's end, cannot be tried on the other.
-const LEAST_HALF: f64 = 0.05;
 /// A channel is named where at least this share of an effect's signal lies.
 const SHARE: f64 = 0.15;
 
@@ -64,7 +63,7 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
             .collect::<Vec<_>>(),
     );
     let runner_up = rivals.first().map(|rival| RunnerUp { id: rival.0.into(), gap: rival.1 });
-    let held_out = if walk.is_none() { held_out(bench, &selection.after, k) } else { None };
+    let held_out = if walk.is_none() { held_out::held_out(bench, &selection.after, k) } else { None };
     let found = Found {
         id: card.id.into(),
         name: card.name.into(),
@@ -145,12 +144,12 @@ fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
     DVector::from_fn(parameters(bench, k), |i, _| fit.theta[before + i] + taken[i])
 }
 
-fn parameters(bench: &Bench, k: usize) -> usize {
+pub(super) fn parameters(bench: &Bench, k: usize) -> usize {
     let accepted = &bench.accepted[k];
     bench.candidates[accepted.candidate].variants.get(accepted.variant).map_or(0, |placed| placed.parameters.len())
 }
 
-fn freed(terms: Vec<Term>) -> Vec<Term> {
+pub(super) fn freed(terms: Vec<Term>) -> Vec<Term> {
     terms.into_iter().map(|term| Term { width: FREE * term.width, ..term }).collect()
 }
 
@@ -241,81 +240,6 @@ fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static str) -
     Value { name: "q".into(), value, sigma: 0.5 * sigma_log * value, unit: unit.into() }
 }
 
-/// Halves of every position, both ways.
-fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
-    let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
-    let count = parameters(bench, k);
-    let halves = [false, true].map(|late| Ledger::new(rows, |at| at.late == late));
-    let all = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
-    let taken = DVector::from_column_slice(&bench.accepted[k].taken);
-    let own: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|term| term.column).collect();
-    let [early, late] = halves.each_ref().map(|half| half.gram(&all.scales, &own, &own).trace());
-    if early.min(late) < LEAST_HALF * early.max(late) {
-        return None;
-    }
-    let mut sums = [0.0; 2];
-    let mut fits = Vec::new();
-    for (late, ledger) in [false, true].into_iter().zip(&halves) {
-        let fit = ledger.fit(&freed(bench.accepted_terms(None)));
-        let own = fit.theta.rows(before, count) + &taken;
-        let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
-        let columns: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|t| t.column).collect();
-        // The rows have `taken` removed already, and the other effects at their best from all rows.
-        let rest = residual(bench, rows, &all, Some(k));
-        for (i, at) in rows.at.iter().enumerate().filter(|(_, at)| at.late != late) {
-            let _ = at;
-            let response = |theta: &DVector<f64>| -> f64 {
-                columns.iter().enumerate().map(|(j, &column)| rows.responses[(i, column)] * theta[j]).sum()
-            };
-            let without = rest[i] + response(&taken);
-            sums[0] += without * without;
-            sums[1] += (without - response(&own)).powi(2);
-        }
-        fits.push((own, covariance));
-    }
-    let count_rows = rows.at.len() as f64;
-    Some(HeldOut { before: sums[0] / count_rows, after: sums[1] / count_rows, constancy_p: constancy(&fits) })
-}
-
-/// Rows less what the accepted effects explain, but for one.
-fn residual(bench: &Bench, rows: &Rows, fit: &Fit, but: Option<usize>) -> Vec<f64> {
-    let terms = bench.accepted_terms(None);
-    let mut of = Vec::new();
-    (0..bench.accepted.len()).for_each(|k| of.extend(std::iter::repeat_n(k, parameters(bench, k))));
-    (0..rows.at.len())
-        .map(|i| {
-            let explained: f64 = terms
-                .iter()
-                .enumerate()
-                .filter(|(j, _)| Some(of[*j]) != but)
-                .map(|(j, term)| rows.responses[(i, term.column)] * fit.theta[j])
-                .sum();
-            rows.values[i] - explained
-        })
-        .collect()
-}
-
-/// Rows less what all accepted effects explain.
-pub fn left(bench: &Bench, rows: &Rows) -> Vec<f64> {
-    let fit = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
-    residual(bench, rows, &fit, None)
-}
-
-/// Chow's test: the halves' parameters differ by no more than their covariances say; χ² by Wilson & Hilferty (1931).
-fn constancy(fits: &[(DVector<f64>, DMatrix<f64>)]) -> f64 {
-    let [first, second] = fits else { return 1.0 };
-    let difference = &first.0 - &second.0;
-    let Some(factor) = (&first.1 + &second.1).cholesky() else { return 1.0 };
-    chi_square_tail(difference.dot(&factor.solve(&difference)), difference.len() as f64)
-}
-
-/// Probability that a χ² of `dof` degrees exceeds `value`.
-pub fn chi_square_tail(value: f64, dof: f64) -> f64 {
-    let spread = 2.0 / (9.0 * dof);
-    let z = ((value / dof).cbrt() - (1.0 - spread)) / spread.sqrt();
-    0.5 * libm::erfc(z / std::f64::consts::SQRT_2)
-}
-
 /// Where a signal lies.
 pub fn place(bench: &Bench, rows: &Rows, signal: &[f64], origin_s: f64) -> Place {
     let total: f64 = signal.iter().map(|v| v * v).sum::<f64>().max(f64::MIN_POSITIVE);
@@ -367,7 +291,7 @@ pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
     let (before, after) = (&selection.before, &selection.after);
     let ledger = Ledger::new(after, |_| true);
     let all = ledger.fit(&bench.accepted_terms(None));
-    let left = residual(bench, after, &all, None);
+    let left = held_out::residual(bench, after, &all, None);
     let mean = |values: &[f64], keep: &dyn Fn(usize) -> bool| {
         let kept = || values.iter().enumerate().filter(|(i, _)| keep(*i));
         kept().map(|(_, v)| v * v).sum::<f64>() / kept().count().max(1) as f64
@@ -376,7 +300,7 @@ pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
     let mut held_out = 0.0;
     for late in [false, true] {
         let fit = Ledger::new(after, |at| at.late == late).fit(&bench.accepted_terms(None));
-        held_out += 0.5 * mean(&residual(bench, after, &fit, None), &|i| after.at[i].late != late);
+        held_out += 0.5 * mean(&held_out::residual(bench, after, &fit, None), &|i| after.at[i].late != late);
     }
     let per_channel = CHANNELS
         .iter()
@@ -394,60 +318,4 @@ pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
         after: Pair { train: mean(&left, &|_| true), held_out },
         per_channel,
     }
-}
-
-/// What the recording could have shown, with 95 % certainty, by the threshold in force.
-pub fn limits(bench: &Bench, selection: &Selection) -> Vec<Limit> {
-    let ledger = Ledger::new(&selection.before, |_| true);
-    (0..bench.candidates.len()).map(|candidate| limit(bench, selection, &ledger, candidate)).collect()
-}
-
-fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) -> Limit {
-    let candidate = &bench.candidates[index];
-    let id = candidate.effect.card.id.to_string();
-    let none = |why: &str, unit: &str| Limit {
-        id: id.clone(),
-        limit: f64::MAX,
-        unit: unit.into(),
-        testable: false,
-        why: why.into(),
-    };
-    if let Some(why) = candidate.absent {
-        return none(why, "");
-    }
-    if let Some((_, unit_si, unit)) = candidate.walk {
-        // What is more than healthy by the first level that counts.
-        let floor = if unit == "mdps/sqrt(s)" {
-            super::twin::noise::BIAS_WALK_FLOOR
-        } else {
-            super::twin::noise::FORCE_WALK_FLOOR
-        };
-        let limit = (floor * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
-        return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
-    }
-    // A parameter's size that shifts the evidence past the threshold in 95 of 100 cases, the median over parameters.
-    let mut limits: Vec<(f64, f64, &str)> = Vec::new();
-    for placed in &candidate.variants {
-        for (i, column) in placed.columns.clone().enumerate() {
-            let information = ledger.gram(&selection.null_scales, &[column], &[column])[(0, 0)];
-            if information <= 0.0 {
-                continue;
-            }
-            let width = placed.parameters[i].width;
-            let occam = 0.5 * (1.0 + width * width * information).ln() + (candidate.variants.len() as f64).ln();
-            let sigmas = (2.0 * (selection.threshold + occam)).sqrt() + 1.645;
-            limits.push((sigmas / information.sqrt(), width, placed.parameters[i].unit));
-        }
-    }
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(limit, width, unit)) = limits.get(limits.len() / 2) else {
-        return none("nothing in this recording depends on it", "");
-    };
-    let testable = limit < 10.0 * width;
-    let why = if testable {
-        String::new()
-    } else {
-        format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}")
-    };
-    Limit { id, limit, unit: unit.into(), testable, why }
 }

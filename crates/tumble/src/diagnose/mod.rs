@@ -6,6 +6,8 @@ pub mod diagnosis;
 pub mod exhibits;
 pub mod findings;
 pub mod gates;
+mod held_out;
+mod limits;
 pub mod prepare;
 pub mod report;
 mod run;

@@ -8,6 +8,7 @@ use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
 use super::exhibits::{self, Exhibits};
 use super::findings::{self, Finding, TIE};
 use super::gates::{self, Gated};
+use super::limits;
 use super::prepare::prepare_samples;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
@@ -168,7 +169,7 @@ fn assemble(
     conditions: Conditions,
     origin_s: f64,
 ) -> Diagnosis {
-    let mut limits = findings::limits(bench, selection);
+    let mut limits = limits::limits(bench, selection);
     limits.extend(gated.limits);
     let mut effects = gated.found;
     effects.extend(judged.named.into_iter().map(|finding| finding.found));

@@ -1,0 +1,87 @@
+//! Does an effect improve rows that it was not fitted to, and is it the same in both halves?
+
+use nalgebra::{DMatrix, DVector};
+
+use super::diagnosis::HeldOut;
+use super::findings::{freed, parameters};
+use super::search::bench::Bench;
+use super::search::ledger::{Fit, Ledger};
+use super::twin::rows::Rows;
+
+/// An effect that shows almost only in one half of the rows, such as one turn's end, cannot be tried on the other.
+const LEAST_HALF: f64 = 0.05;
+
+/// Halves of every position, both ways.
+pub fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
+    let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
+    let count = parameters(bench, k);
+    let halves = [false, true].map(|late| Ledger::new(rows, |at| at.late == late));
+    let all = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
+    let taken = DVector::from_column_slice(&bench.accepted[k].taken);
+    let own: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|term| term.column).collect();
+    let [early, late] = halves.each_ref().map(|half| half.gram(&all.scales, &own, &own).trace());
+    if early.min(late) < LEAST_HALF * early.max(late) {
+        return None;
+    }
+    let mut sums = [0.0; 2];
+    let mut fits = Vec::new();
+    for (late, ledger) in [false, true].into_iter().zip(&halves) {
+        let fit = ledger.fit(&freed(bench.accepted_terms(None)));
+        let own = fit.theta.rows(before, count) + &taken;
+        let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
+        let columns: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|t| t.column).collect();
+        // The rows have `taken` removed already, and the other effects at their best from all rows.
+        let rest = residual(bench, rows, &all, Some(k));
+        for (i, at) in rows.at.iter().enumerate().filter(|(_, at)| at.late != late) {
+            let _ = at;
+            let response = |theta: &DVector<f64>| -> f64 {
+                columns.iter().enumerate().map(|(j, &column)| rows.responses[(i, column)] * theta[j]).sum()
+            };
+            let without = rest[i] + response(&taken);
+            sums[0] += without * without;
+            sums[1] += (without - response(&own)).powi(2);
+        }
+        fits.push((own, covariance));
+    }
+    let count_rows = rows.at.len() as f64;
+    Some(HeldOut { before: sums[0] / count_rows, after: sums[1] / count_rows, constancy_p: constancy(&fits) })
+}
+
+/// Rows less what the accepted effects explain, but for one.
+pub fn residual(bench: &Bench, rows: &Rows, fit: &Fit, but: Option<usize>) -> Vec<f64> {
+    let terms = bench.accepted_terms(None);
+    let mut of = Vec::new();
+    (0..bench.accepted.len()).for_each(|k| of.extend(std::iter::repeat_n(k, parameters(bench, k))));
+    (0..rows.at.len())
+        .map(|i| {
+            let explained: f64 = terms
+                .iter()
+                .enumerate()
+                .filter(|(j, _)| Some(of[*j]) != but)
+                .map(|(j, term)| rows.responses[(i, term.column)] * fit.theta[j])
+                .sum();
+            rows.values[i] - explained
+        })
+        .collect()
+}
+
+/// Rows less what all accepted effects explain.
+pub fn left(bench: &Bench, rows: &Rows) -> Vec<f64> {
+    let fit = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
+    residual(bench, rows, &fit, None)
+}
+
+/// Chow's test: the halves' parameters differ by no more than their covariances say; χ² by Wilson & Hilferty (1931).
+fn constancy(fits: &[(DVector<f64>, DMatrix<f64>)]) -> f64 {
+    let [first, second] = fits else { return 1.0 };
+    let difference = &first.0 - &second.0;
+    let Some(factor) = (&first.1 + &second.1).cholesky() else { return 1.0 };
+    chi_square_tail(difference.dot(&factor.solve(&difference)), difference.len() as f64)
+}
+
+/// Probability that a χ² of `dof` degrees exceeds `value`.
+pub fn chi_square_tail(value: f64, dof: f64) -> f64 {
+    let spread = 2.0 / (9.0 * dof);
+    let z = ((value / dof).cbrt() - (1.0 - spread)) / spread.sqrt();
+    0.5 * libm::erfc(z / std::f64::consts::SQRT_2)
+}
