@@ -6,6 +6,7 @@ use tumble::study::trial::readings;
 use tumble_core::calibration::Verdict;
 use tumble_core::estimate::Conditions;
 use tumble_core::procedure::{BoxFaces, TurnStops};
+use tumble_sim::scheme::Imperfection;
 use tumble_sim::{Scheme, SchemeConfig};
 
 fn conditions(faces: BoxFaces) -> Conditions {
@@ -14,7 +15,9 @@ fn conditions(faces: BoxFaces) -> Conditions {
 
 /// Largest differences of the gyroscope's correction, device less batch: scale, K, and over sigma.
 fn differences(scheme: Scheme, seed: u64, faces: BoxFaces, from_records: bool) -> (f64, f64, f64) {
-    let recording = SchemeConfig::new(scheme, seed).record().expect("a valid configuration");
+    // The batch does not know that a box turns about its face's normal; where the hand wobbles, the device does not either.
+    let config = SchemeConfig::new(scheme, seed).with(Imperfection::Wobble(1.0));
+    let recording = config.record().expect("a valid configuration");
     let readings = readings(&recording.samples);
     let conditions = conditions(faces);
     let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions };

@@ -17,6 +17,7 @@ pub mod state;
 pub mod sums;
 pub mod two_step;
 pub mod walk;
+pub mod wobble;
 
 pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};
 pub use noise::Noise;

@@ -49,6 +49,15 @@ impl Face {
         n
     }
 
+    /// Unit vectors of the two axes that lie in the face.
+    pub fn plane(self) -> [Vector3<f32>; 2] {
+        [1, 2].map(|step| {
+            let mut axis = Vector3::zeros();
+            axis[(self.axis() + step) % 3] = 1.0;
+            axis
+        })
+    }
+
     /// The face whose axis lies within [`Self::CONE_COS`] of the specific force, or none for an oblique pose.
     pub fn from_specific_force(force: &Vector3<f32>) -> Option<Self> {
         let norm = force.norm();

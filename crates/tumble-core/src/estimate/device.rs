@@ -191,6 +191,10 @@ impl<const S: usize> Estimator<S> {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
         self.settle_stops();
+        let noise = &mut self.noise;
+        let set = |sigma: &mut f32, found: Option<f32>| *sigma = found.map_or(*sigma, libm::sqrtf);
+        set(&mut noise.wobble_sigma_rad, self.walk.wobble.turning());
+        set(&mut noise.rocking_sigma_rad, self.walk.wobble.rest());
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }

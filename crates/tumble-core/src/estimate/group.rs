@@ -19,17 +19,19 @@ pub struct Group {
     drive: AttitudeDrive,
     since_mean: AttitudeDrive,
     gravity: GravityParts,
+    face: Vector3<f32>,
 }
 
 impl Group {
-    /// Adds a record: its attitude drive and, on the table, its gravity reading.
-    pub fn take(&mut self, drive: &AttitudeDrive, gravity: Option<&GravityParts>, dt_s: f32) {
+    /// Adds a record: its attitude drive and, on the table, its gravity reading and the normal of the face it lies on.
+    pub fn take(&mut self, drive: &AttitudeDrive, gravity: Option<&GravityParts>, face_n: &Vector3<f32>, dt_s: f32) {
         self.drive.add(drive, 1.0);
         // A record's drive is missed by the readings of all records before and by half of its own.
         self.since_mean.add(drive, self.seconds + 0.5 * dt_s);
         if let Some(gravity) = gravity {
             self.gravity.add(gravity, dt_s);
         }
+        self.face += face_n * dt_s;
         self.records += 1;
         self.seconds += dt_s;
     }
@@ -39,13 +41,23 @@ impl Group {
         filter.propagate(&self.drive, density * self.seconds);
     }
 
+    /// The face's mean normal, and how attitude has moved on since that mean.
+    pub fn mean_face(&self) -> (Vector3<f32>, AttitudeDrive) {
+        (self.face / self.seconds, self.mean_since())
+    }
+
+    fn mean_since(&self) -> AttitudeDrive {
+        let mut since = AttitudeDrive::default();
+        since.add(&self.since_mean, 1.0 / self.seconds);
+        since
+    }
+
     /// Takes in the mean gravity reading after [`Self::propagate`].
     pub fn observe(&self, filter: &mut Filter, gravity_mps2: f32, variance: f32) -> [Innovation; 3] {
         let share = 1.0 / self.seconds;
         let mut mean = GravityParts::default();
         mean.add(&self.gravity, share);
-        let mut since = AttitudeDrive::default();
-        since.add(&self.since_mean, share);
+        let since = self.mean_since();
         core::array::from_fn(|axis| {
             let observation = mean.observation(axis, gravity_mps2, Some(&since));
             filter.observe(&observation.row, observation.residual, variance)

@@ -149,6 +149,19 @@ pub fn plate(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2]) -> [Observati
     [Observation { residual: normal_n.x, row: facet(x, 0) }, Observation { residual: normal_n.y, row: facet(y, 1) }]
 }
 
+/// The same in a turn, of a square face's mean normal: `(R n)ₓᵧ = p − (φ × R n)ₓᵧ − (R w)ₓᵧ`. `since` as in
+/// [`GravityParts::observation`]; the heading's part, a table's tilt small, goes without.
+pub fn plate_in_turn(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2], since: &AttitudeDrive) -> [Observation; 2] {
+    let tilt = [(1, normal_n.z, -normal_n.y), (0, -normal_n.z, normal_n.x)];
+    core::array::from_fn(|axis| {
+        let (attitude, coefficient, heading) = tilt[axis];
+        let row = Row::new().with(Block::Attitude, attitude, -coefficient).with(Block::Attitude, 2, -heading);
+        let row = since.add_to(row, attitude, coefficient).with(Block::Table, axis, 1.0);
+        let row = row.with(Block::Wobble, 0, -plane_n[0][axis]).with(Block::Wobble, 1, -plane_n[1][axis]);
+        Observation { residual: normal_n[axis], row }
+    })
+}
+
 /// The shortest rotation that takes `up` to z. The half-angle form keeps small angles to `f32`'s last digit, where an
 /// arc cosine of the dot product would round them to 0.3 mrad. Straight down has no shortest way: half a turn about x.
 pub fn levelling(up: &Vector3<f32>) -> UnitQuaternion<f32> {

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 use super::drift::Slope;
 use super::facets::SQUARE;
+use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
@@ -53,6 +54,10 @@ pub struct Noise {
     pub pivot_sigma_m: f32,
     /// One face of the box, rad; none where it is not known to be square.
     pub facet_sigma_rad: Option<f32>,
+    /// How far the face that a turn is made on leaves the table during the turn, rad: what turns with the box …
+    pub wobble_sigma_rad: f32,
+    /// … and the rest.
+    pub rocking_sigma_rad: f32,
     /// Rates' sample variance of the quietest rest, (rad/s)².
     pub quiet_variance: f32,
 }
@@ -90,6 +95,8 @@ impl Noise {
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
             facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
+            wobble_sigma_rad: UNSEEN,
+            rocking_sigma_rad: UNSEEN,
             quiet_variance,
         }
     }
@@ -105,6 +112,8 @@ impl Noise {
                 noise.stop_sigma_rad,
                 noise.pivot_sigma_m,
                 facet,
+                noise.wobble_sigma_rad,
+                noise.rocking_sigma_rad,
             ]
         };
         parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))

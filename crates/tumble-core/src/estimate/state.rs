@@ -13,12 +13,13 @@
 //! | Earth Ω | 3 | rad/s | Earth's rotation, frame n, whose heading is that of the first still |
 //! | fence h | 1 | rad | heading error at the first stop of a visit, less that stop's own error |
 //! | facet e | 2 | rad | how far the face that lies on the table is from square, frame b; anew for every visit |
+//! | wobble w | 2 | rad | how far the face leaves the table in a turn, as seen from the box; anew for every turn |
 
 use heapless::Vec;
 use nalgebra::Vector3;
 
 /// All of it.
-pub const STATES: usize = 41;
+pub const STATES: usize = 43;
 
 /// A run of states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +46,8 @@ pub enum Block {
     Fence,
     /// e.
     Facet,
+    /// w.
+    Wobble,
 }
 
 impl Block {
@@ -62,6 +65,7 @@ impl Block {
             Self::Earth => 35,
             Self::Fence => 38,
             Self::Facet => 39,
+            Self::Wobble => 41,
         }
     }
 
@@ -69,7 +73,7 @@ impl Block {
     pub const fn size(self) -> usize {
         match self {
             Self::GyroCorrection | Self::AccelCorrection => 9,
-            Self::Table | Self::Facet => 2,
+            Self::Table | Self::Facet | Self::Wobble => 2,
             Self::Fence => 1,
             _ => 3,
         }

@@ -3,22 +3,30 @@
 pub(super) mod still;
 
 use heapless::Vec;
-use nalgebra::{Matrix3, UnitQuaternion};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::closures::Closures;
 use super::drift::Drift;
-use super::facets::Facets;
+use super::facets::{Facets, SQUARE};
 use super::filter::{Filter, Innovation};
 use super::group::{Group, TurnNoise};
-use super::model::{self, Nominal};
+use super::model::{self, Nominal, Observation};
 use super::noise::Noise;
 use super::state::Block;
 use super::sums::{SegmentNoise, Sums};
+use super::wobble::Wobble;
 use crate::face::Face;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
 
 /// Records of a turn that make one step of the filter: half a second.
 const GROUP: u16 = 6;
+/// Groups from one look at the plate to the next, 1.5 s: gyroscope and gravity together forget an attitude error in 1.7 s, so that
+/// more looks would tell little more.
+const PLATED: u16 = 3;
+/// What a hand's tremor leaves in a group's mean normal, rad: 0.005° at 8–12 Hz, seen twelve times a second.
+const WHITE: f32 = 30e-6;
+/// A wobble fades in and out and has overtones: this share of the variance of what turns with the box does not.
+const UNSTEADY: f32 = 0.25;
 /// How much noisier than rest a turn is taken for before its innovations are seen.
 const TURN_FORCE_SCALE: f32 = 25.0;
 
@@ -37,6 +45,8 @@ pub struct Walk<const S: usize> {
     pub facets: Facets,
     /// See [`Self::closures`].
     pub drift: Drift,
+    /// See [`Self::closures`].
+    pub wobble: Wobble,
     /// Do turns still learn their own noise?
     pub adapting: bool,
     /// Are there faces enough for the plate to be believed?
@@ -58,6 +68,8 @@ pub struct Walk<const S: usize> {
     visit: Option<Visit>,
     group: Group,
     turn_noise: TurnNoise,
+    /// Groups of this turn since the plate was last looked at.
+    unplated: u16,
     last_rest_us: u64,
     /// The move since the last rest: its segment, its length, and that rest's levelling variance, rad².
     hinge: Option<usize>,
@@ -85,6 +97,7 @@ impl<const S: usize> Walk<S> {
             closures: Closures::default(),
             facets: Facets::default(),
             drift: Drift::default(),
+            wobble: Wobble::default(),
             adapting: true,
             plated: true,
             coarse: true,
@@ -101,6 +114,7 @@ impl<const S: usize> Walk<S> {
             visit: None,
             group: Group::default(),
             turn_noise: TurnNoise::default(),
+            unplated: 0,
             last_rest_us: 0,
             hinge: None,
             move_s: 0.0,
@@ -156,6 +170,7 @@ impl<const S: usize> Walk<S> {
         self.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
         self.group = Group::default();
         self.turn_noise = TurnNoise::default();
+        self.unplated = 0;
         if segment.is_usable_still() {
             self.enter_still(tape, segment, noise);
             return;
@@ -163,6 +178,7 @@ impl<const S: usize> Walk<S> {
         self.hinge = self.aligned.then_some(self.segment);
         if matches!(segment.kind, Kind::OnTable { .. }) {
             (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
+            (0..2).for_each(|axis| self.filter.reset(Block::Wobble, axis, 0.0, noise.wobble_sigma_rad));
         } else {
             self.end_visit(noise);
         }
@@ -208,7 +224,8 @@ impl<const S: usize> Walk<S> {
         let middle = self.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
         let gravity = lever.map(|lever| self.now.gravity(record, &to_n, self.gravity, lever));
-        self.group.take(&self.now.drive(record, &to_n), gravity.as_ref(), record.dt_s);
+        let face = self.visit.map_or_else(Vector3::zeros, |visit| to_n * visit.face.normal());
+        self.group.take(&self.now.drive(record, &to_n), gravity.as_ref(), &face, record.dt_s);
         let earth = UnitQuaternion::from_scaled_axis(self.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.attitude = UnitQuaternion::new_normalize(next.into_inner());
@@ -233,6 +250,46 @@ impl<const S: usize> Walk<S> {
             let variance = noise.force_density / group.seconds * own.force_scale;
             let innovations = group.observe(&mut self.filter, self.gravity, variance);
             self.turn_noise.take(&innovations, variance);
+            self.plate_in_turn(segment, &group, noise);
+        }
+    }
+
+    /// The face that a turn is made on stays in the table's plane but for a wobble. What of that does not turn with the box is
+    /// coherent all the same: as white noise it must be given its variance times the number of readings, for their mean
+    /// to be no surer than one.
+    fn plate_in_turn(&mut self, segment: &Segment, group: &Group, noise: &Noise) {
+        self.unplated += 1;
+        let Some(visit) = self.visit.filter(|_| self.unplated >= PLATED && group.records == GROUP) else { return };
+        self.unplated = 0;
+        let (normal, since) = group.mean_face();
+        let known = self.plated && !self.coarse && self.table_known && noise.facet_sigma_rad == Some(SQUARE);
+        if !known || !self.facets.admits(&normal) {
+            return;
+        }
+        let readings = f32::from(segment.end - segment.first) / f32::from(GROUP * PLATED);
+        let [wobble, rocking] = [noise.wobble_sigma_rad, noise.rocking_sigma_rad].map(|sigma| sigma * sigma);
+        let rocking = (rocking + UNSTEADY * wobble) * readings.max(1.0);
+        let loose = self.loose(noise);
+        let plane = visit.face.plane().map(|axis| self.attitude * axis);
+        for Observation { residual, row } in model::plate_in_turn(&normal, &plane, &since) {
+            let innovation = self.filter.observe(&row, residual, WHITE * WHITE + rocking);
+            self.wobble.take(&innovation, rocking, loose);
+        }
+    }
+
+    /// What gyroscope and gravity alone leave unknown of the attitude in a turn, rad²: `√(q r)`. That the wobble is given more variance
+    /// than it has, and K a prior thirty sigma wide, makes the filter's own variances larger than errors are.
+    fn loose(&self, noise: &Noise) -> f32 {
+        let own = &self.noise[self.segment];
+        let rate = noise.rate_density * noise.motion_scale * own.rate_scale;
+        libm::sqrtf(rate * noise.force_density * own.force_scale) / self.gravity
+    }
+
+    fn learn_wobble(&mut self, noise: &Noise) {
+        let loose = self.loose(noise);
+        for index in Block::Wobble.range() {
+            let (mean, variance) = (self.filter.state()[index], self.filter.covariance()[(index, index)]);
+            self.wobble.take_turn(mean, variance, noise.wobble_sigma_rad * noise.wobble_sigma_rad, loose);
         }
     }
 
@@ -249,6 +306,7 @@ impl<const S: usize> Walk<S> {
             && segment.exclusion == Exclusion::None
         {
             self.learn_pivot(noise);
+            self.learn_wobble(noise);
             if let Some(factor) = self.turn_noise.factor().filter(|_| self.adapting) {
                 let scale = &mut self.noise[self.segment].force_scale;
                 *scale = (*scale * factor).clamp(1.0, 1e6);

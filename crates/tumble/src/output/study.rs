@@ -33,7 +33,8 @@ pub fn limits(nominal: &[ScenarioSummary], imperfect: &[ScenarioSummary]) -> Str
         let _ = short(&mut text, imperfect);
     }
     text.push_str(
-        "bound+: for one who knows the lever arm; * Cramér–Rao sigma published in design.md, of another protocol\n",
+        "bound+: for one who knows the lever arm; bound-: for one who does not know that a box turns about its face's \
+         normal; * Cramér–Rao sigma published in design.md, of another protocol\n",
     );
     text
 }
@@ -44,14 +45,14 @@ fn full(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
     scenario.failures.iter().try_for_each(|failure| writeln!(text, "  failed: {failure}"))?;
     writeln!(
         text,
-        "  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>9} {:>10}",
-        "", "unit", "mean", "std", "rms", "sigma", "bound", "bound+", "ratio", "2 sigma", "design.md*"
+        "  {:<24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>9} {:>10}",
+        "", "unit", "mean", "std", "rms", "sigma", "bound", "bound+", "bound-", "ratio", "2 sigma", "design.md*"
     )?;
     for group in &scenario.groups {
         let published = published(scenario, group.group).map_or_else(String::new, |value| format!("{value:.1}"));
         writeln!(
             text,
-            "  {:<24} {:>5} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>6.2} {:>7.1} % {published:>10}",
+            "  {:<24} {:>5} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>8.2} {:>6.2} {:>7.1} % {published:>10}",
             group.group,
             group.unit,
             group.mean,
@@ -60,6 +61,7 @@ fn full(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
             group.sigma,
             group.bound,
             group.bound_lever_known,
+            group.bound_axis_free,
             group.ratio,
             100.0 * group.within_2_sigma
         )?;

@@ -7,9 +7,10 @@
 //! - frame n, `φ ← φ + R (δM M⁻¹ω − M δb) dt − δΩ dt`, with the gyroscope's true density as process noise, `R M Mᵀ Rᵀ q dt`;
 //! - at rest the attitude stands, the rate is seen with density q and gravity with density r;
 //! - in turns gravity is seen through the lever every `STEP_S`, in moves by hand not at all;
-//! - faces of a square box lie on the plate exactly, stops have the simulation's own spread.
+//! - faces of a square box lie on the plate exactly, and in turns as well where the simulation's hands do not wobble;
+//!   stops have the simulation's own spread.
 //!
-//! Assumed known, which no estimator is told: both densities, when the box rests to the sample, that the axis of all turns
+//! Assumed known, which no estimator is told: both densities, that the hands do not wobble, when the box rests to the sample, that the axis of all turns
 //! passes through one point of the box, that nothing trembles. Assumed unknown, though a person may know it: the lever
 //! (5 cm prior), the Earth's rate (three components), headings of visits. Priors are the device's; without them the
 //! bound would be larger by less than 1e-4.
@@ -45,17 +46,34 @@ type Row = SVector<f64, STATES>;
 
 /// Covariance of the 24 parameters in the order of [`PARAMETERS`]; rows of what the frame fixes are zero.
 pub fn bound(config: &SchemeConfig, recording: &Recording, faces: BoxFaces) -> SMatrix<f64, PARAMETERS, PARAMETERS> {
-    bound_with_lever(config, recording, faces, LEVER_SIGMA_M)
+    bound_knowing(config, recording, faces, Knowledge::default())
 }
 
-/// The same where the lever is known to a sigma, m.
-pub fn bound_with_lever(
+/// What is known of turns.
+#[derive(Clone, Copy, Debug)]
+pub struct Knowledge {
+    /// Sigma of the lever, m.
+    pub lever_sigma_m: f64,
+    /// That a box on a table turns about its face's normal.
+    pub axis: bool,
+}
+
+impl Default for Knowledge {
+    fn default() -> Self {
+        Self { lever_sigma_m: LEVER_SIGMA_M, axis: true }
+    }
+}
+
+/// The same for one who knows more or less of turns.
+pub fn bound_knowing(
     config: &SchemeConfig,
     recording: &Recording,
     faces: BoxFaces,
-    lever_sigma_m: f64,
+    knowledge: Knowledge,
 ) -> SMatrix<f64, PARAMETERS, PARAMETERS> {
     let mut bound = Bound::new(config, recording, faces);
+    bound.axis = knowledge.axis && bound.square && config.world.motion.hands.wobble_deg == 0.0;
+    let lever_sigma_m = knowledge.lever_sigma_m;
     bound.covariance.fixed_view_mut::<3, 3>(LEVER, LEVER).fill_diagonal(lever_sigma_m * lever_sigma_m);
     for segment in recording.world.motion.segments() {
         bound.walk(segment);
@@ -69,6 +87,8 @@ struct Bound<'a> {
     recording: &'a Recording,
     covariance: SMatrix<f64, STATES, STATES>,
     square: bool,
+    /// Do faces stay on the plate in turns?
+    axis: bool,
     /// Of the result's frame in the box.
     rotation_b_from_f: Matrix3<f64>,
     gyro: Matrix3<f64>,
@@ -92,6 +112,7 @@ impl<'a> Bound<'a> {
             recording,
             covariance: prior(square),
             square,
+            axis: false,
             rotation_b_from_f: if square { Matrix3::identity() } else { rotation_a_from_b.transpose() },
             gyro: matrix(&frame.gyroscope.correction),
             accel: matrix(&frame.accelerometer.correction),
@@ -121,6 +142,9 @@ impl<'a> Bound<'a> {
             self.drive(middle_s, dt);
             if segment.kind() == Kind::Turn {
                 self.gravity(middle_s, dt, true);
+                if let Some((_, normal_n)) = self.lying_face(middle_s).filter(|_| self.axis) {
+                    self.plate(&normal_n);
+                }
             }
         }
         if segment.kind() != Kind::Turn {
@@ -132,13 +156,18 @@ impl<'a> Bound<'a> {
         let (middle_s, duration_s) = (0.5 * (start_s + end_s), end_s - start_s);
         self.gravity(middle_s, duration_s, false);
         self.rate(middle_s, duration_s);
-        let up_f = self.rotation_n_from_f(middle_s).row(2).transpose();
-        let Some((face, normal_b)) = up_face(&(self.rotation_b_from_f * up_f)) else { return };
-        let normal_n = self.recording.world.true_attitude(middle_s) * normal_b;
+        let Some((face, normal_n)) = self.lying_face(middle_s) else { return };
         if self.square {
             self.plate(&normal_n);
         }
         self.stop(face, &normal_n);
+    }
+
+    /// Which face is up, and its normal in frame n.
+    fn lying_face(&self, t_s: f64) -> Option<(usize, Vector3<f64>)> {
+        let up_f = self.rotation_n_from_f(t_s).row(2).transpose();
+        let (face, normal_b) = up_face(&(self.rotation_b_from_f * up_f))?;
+        Some((face, self.recording.world.true_attitude(t_s) * normal_b))
     }
 
     fn rotation_n_from_f(&self, t_s: f64) -> Matrix3<f64> {

@@ -84,6 +84,8 @@ pub struct GroupSummary {
     pub bound: f64,
     /// Of the bound for one who knows the lever arm.
     pub bound_lever_known: f64,
+    /// Of the bound for one who does not know that a box turns about its face's normal.
+    pub bound_axis_free: f64,
     /// `rms / bound`.
     pub ratio: f64,
     /// Share of errors within two of the estimator's sigmas; 0.954 if these are true.
@@ -137,6 +139,7 @@ pub fn group(trials: &[Trial], group: Group) -> GroupSummary {
         sigma: over(&|trial, i| trial.covariance[(i, i)].sqrt()),
         bound,
         bound_lever_known: over(&|trial, i| trial.bound_lever_known[i]),
+        bound_axis_free: over(&|trial, i| trial.bound_axis_free[i]),
         ratio: all / bound,
         within_2_sigma: within.filter(|within| *within).count() as f64 / (count * indices.len().max(1) as f64),
     }

@@ -11,7 +11,7 @@ use tumble_sim::motion::Stops;
 use tumble_sim::sensor::FrameTruth;
 use tumble_sim::{Face, SchemeConfig, SimError};
 
-use super::bound::{bound, bound_with_lever};
+use super::bound::{Knowledge, bound_knowing};
 use crate::calibrate::{Method, Session};
 use crate::recording::Reading;
 
@@ -48,6 +48,8 @@ pub struct Trial {
     pub bound: Parameters,
     /// The same for one who knows the lever arm.
     pub bound_lever_known: Parameters,
+    /// The same for one who does not know that a box turns about its face's normal.
+    pub bound_axis_free: Parameters,
     /// What other estimators erred by, each against the truth in its own frame.
     pub others: Vec<(&'static str, Parameters)>,
     /// The estimate.
@@ -89,9 +91,14 @@ impl Trial {
             let reason = outcome.reasons.into_iter().next().unwrap_or_default();
             return Err(TrialError::NoEstimate { seed: config.world.seed, reason });
         };
-        let sigmas = |bound: SMatrix<f64, PARAMETERS, PARAMETERS>| bound.diagonal().map(|v| v.max(0.0).sqrt());
-        let bound_lever_known = sigmas(bound_with_lever(config, &recording, faces, KNOWN_LEVER_M));
-        let bound = sigmas(bound(config, &recording, faces));
+        let usual = Knowledge::default();
+        let [bound, bound_lever_known, bound_axis_free] =
+            [usual, Knowledge { lever_sigma_m: KNOWN_LEVER_M, ..usual }, Knowledge { axis: false, ..usual }].map(
+                |knowledge| {
+                    let variances = bound_knowing(config, &recording, faces, knowledge).diagonal();
+                    variances.map(|variance| variance.max(0.0).sqrt())
+                },
+            );
         let truth = recording.truth;
         let others = others(&session, &truth, two_step.as_ref(), references);
         let (truth, rotation_f_from_b) = match faces {
@@ -103,6 +110,7 @@ impl Trial {
             covariance: covariance.cast(),
             bound,
             bound_lever_known,
+            bound_axis_free,
             others,
             calibration,
             two_step,

@@ -95,8 +95,6 @@ impl<const S: usize> Walk<S> {
 
     fn plate(&mut self, face: Face, noise: &Noise) {
         let Some(sigma) = noise.facet_sigma_rad else { return };
-        let axes = [(face.axis() + 1) % 3, (face.axis() + 2) % 3];
-        let unit = |axis: usize| Vector3::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
         let normal = self.attitude * face.normal();
         if !self.facets.admits(&normal) {
             return;
@@ -107,7 +105,7 @@ impl<const S: usize> Walk<S> {
             self.facets.take(&face.normal(), &normal, &to_n, self.level_variance);
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
-        let plane = axes.map(|axis| self.attitude * unit(axis));
+        let plane = face.plane().map(|axis| self.attitude * axis);
         let contact = if self.coarse { COARSE_SIGMA } else { CONTACT_SIGMA };
         let variance = contact * contact;
         if !self.plated {
