@@ -1,0 +1,76 @@
+//! The diagnosis against recordings whose physics is known: nothing, something, something it does not know, nothing to go by.
+
+use tumble::diagnose::carry::carry;
+use tumble::diagnose::diagnosis::Verdict;
+use tumble::diagnose::{Options, Outcome, diagnose};
+use tumble::recording::{BoxFaces, Metadata, Recording, Row, TurnStops};
+use tumble_sim::effect::Effect;
+use tumble_sim::{Scheme, SchemeConfig};
+
+fn recording(scheme: Scheme, seed: u64, effect: Option<&str>) -> (Recording, tumble_sim::Truth) {
+    let mut config = SchemeConfig::realistic(scheme, seed);
+    config.effects = effect.map(|word| Effect::parse(word).expect("a known effect")).into_iter().collect();
+    let made = config.record().expect("a valid configuration");
+    let row = |sample: &tumble_sim::Sample| Row {
+        t_s: (sample.t_s * 1e6).round() / 1e6,
+        gyro_dps: sample.angular_rate_rad_s.map(f64::to_degrees).into(),
+        accel_g: (sample.specific_force_mps2 / tumble_sim::STANDARD_GRAVITY_MPS2).into(),
+        temp_c: Some(sample.temperature_degc),
+    };
+    let turns = if config.turns_word() == "fenced" { TurnStops::Fenced } else { TurnStops::ByHand };
+    let metadata = Metadata { turns: Some(turns), box_faces: Some(BoxFaces::Square), ..Metadata::default() };
+    let rows = made.samples.iter().map(row).collect();
+    (Recording { metadata, rows, notices: Vec::new() }, made.truth)
+}
+
+fn ask(recording: &Recording, without: &[&str]) -> Outcome {
+    let without = without.iter().map(ToString::to_string).collect();
+    diagnose(recording, &Options { without, seed: 1, conditions: None }, &mut |_, _| {})
+}
+
+#[test]
+fn a_clean_recording_misses_nothing() {
+    let (recording, _) = recording(Scheme::Double, 5, None);
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:?}");
+    assert!(diagnosis.detection_limits.iter().any(|limit| limit.id == "gyro_g_sensitivity" && limit.limit < 0.02));
+}
+
+#[test]
+fn g_sensitivity_is_named_with_its_numbers_and_can_be_carried() {
+    let (recording, truth) = recording(Scheme::Double, 6, Some("gyro_g_sensitivity=0.08"));
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::EffectFound, "{diagnosis:?}");
+    let found = &diagnosis.effects[0];
+    assert_eq!((found.id.as_str(), diagnosis.effects.len()), ("gyro_g_sensitivity", 1));
+    let pairs = found.parameters.iter().zip(&truth.effects[0].parameters);
+    let chi_square: f64 = pairs.map(|(value, truth)| ((value.value - truth.value) / value.sigma).powi(2)).sum();
+    // Nine numbers: χ²₉ exceeds 33.7 once in ten thousand.
+    assert!(chi_square < 33.7, "{chi_square}: {:?} {:?}", found.parameters, truth.effects);
+    let held_out = found.held_out.expect("it shows in both halves");
+    assert!(held_out.after < held_out.before && held_out.constancy_p > 1e-4, "{held_out:?}");
+
+    let conditions = tumble::calibrate::conditions(&recording.metadata);
+    let (readings, carried) = carry(&recording, conditions, &["gyro_g_sensitivity".into()]).expect("it can be carried");
+    assert_eq!((readings.len(), carried.len(), carried[0].parameters.len()), (recording.rows.len(), 1, 9));
+    assert!(carry(&recording, conditions, &["shock".into()]).is_err());
+}
+
+#[test]
+fn what_is_not_in_the_catalogue_is_unknown() {
+    let (recording, _) = recording(Scheme::Double, 7, Some("gyro_g_sensitivity=0.08"));
+    let without = ["gyro_g_sensitivity", "gyro_g_squared", "gyro_bias_step"];
+    let diagnosis = ask(&recording, &without).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::UnknownEffect, "{diagnosis:?}");
+    let unknown = diagnosis.unknown.expect("it is unknown");
+    assert!(unknown.p_value < 0.003 && !unknown.correlates_with.is_empty(), "{unknown:?}");
+}
+
+#[test]
+fn one_pose_supports_no_verdict() {
+    let (mut recording, _) = recording(Scheme::Double, 8, None);
+    recording.rows.truncate(1200);
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::NotTestable, "{diagnosis:?}");
+    assert!(!diagnosis.reasons.is_empty());
+}
