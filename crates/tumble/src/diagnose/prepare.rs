@@ -35,10 +35,11 @@ pub fn prepare(recording: &Recording, conditions: Conditions) -> Result<Prepared
     let readings = recording.samples(&inference);
     let origin_s = recording.origin_s();
     let samples = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    prepare_samples(samples, &readings, origin_s, inference.missing(), conditions)
+    prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &[])
 }
 
-/// The same from samples: `readings` are what the estimator takes, `samples` the same in `f64`.
+/// The same from samples: `readings` are what the estimator takes, `samples` the same in `f64`; segments in `masked` are
+/// left out and lose attitude.
 ///
 /// # Errors
 /// As [`prepare`].
@@ -48,6 +49,7 @@ pub fn prepare_samples(
     origin_s: f64,
     lost: u32,
     conditions: Conditions,
+    masked: &[usize],
 ) -> Result<Prepared, NoTwin> {
     let session = Session { readings, origin_s, lost, conditions };
     let (tape, _) = session.tape(1.0);
@@ -70,7 +72,10 @@ pub fn prepare_samples(
             Nominal::new(&start.gyro, &start.accel)
         }
     };
-    let stretches = stretches(tape.segments(), &samples, &device_noise);
+    let mut stretches = stretches(tape.segments(), &samples, &device_noise);
+    for stretch in stretches.iter_mut().filter(|stretch| masked.contains(&stretch.number)) {
+        (stretch.broken, stretch.excluded) = (true, true);
+    }
     let noise = Noise::new(&device_noise, conditions.stops);
     let twin = Twin::new(samples, stretches, start, noise, &conditions);
     Ok(Prepared { twin, tape, estimate, conditions })

@@ -26,6 +26,9 @@ const POSE_RAD: f64 = 0.52;
 /// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
 const BEYOND_UNKNOWN: f64 = 0.5;
 
+/// ln of the odds that a name needs beside a distortion of the samples: 5e8 to 1.
+const BESIDE_GATES: f64 = 20.0;
+
 /// What may be asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -69,7 +72,8 @@ pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progres
         return without_physics(&gated, stop.clone());
     }
     repair(&mut samples, &mut readings, &gated);
-    let prepared = match prepare_samples(samples, &readings, origin_s, inference.missing(), conditions) {
+    let masked = masked(&gated);
+    let prepared = match prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &masked) {
         Ok(prepared) => prepared,
         Err(why) => return without_physics(&gated, why.0),
     };
@@ -86,7 +90,10 @@ pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progres
     progress("what is left", 0.85);
     let leftover = unknown::weigh(&mut bench, None);
     let found = findings::findings(&mut bench, &selection, origin_s);
-    let judged = judge(&mut bench, &selection, &leftover, found);
+    let mut judged = judge(&mut bench, &selection, &leftover, found);
+    if !gated.found.is_empty() {
+        judged.beside_gates();
+    }
     progress("report", 0.95);
     let exhibits = exhibits::exhibits(&bench, &selection, &judged.named, &leftover, origin_s);
     let diagnosis = assemble(&bench, &selection, &leftover, judged, gated, conditions, origin_s);
@@ -100,9 +107,34 @@ struct Judged {
     unknown: bool,
     /// What improves only on the data it was fitted to.
     dropped: Vec<String>,
+    /// Is something left that a distortion of the samples accounts for?
+    traces: bool,
     /// Shapes that explain better than a name did.
     better: Vec<(String, f64)>,
     p_value: f64,
+}
+
+impl Judged {
+    /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
+    /// odds that no trace would reach; a bias that wanders is none.
+    fn beside_gates(&mut self) {
+        if self.unknown {
+            self.traces = true;
+        }
+        self.unknown = false;
+        let (named, dropped): (Vec<_>, Vec<_>) = std::mem::take(&mut self.named)
+            .into_iter()
+            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.found.id.ends_with("_random_walk"));
+        self.named = named;
+        self.traces |= !dropped.is_empty();
+    }
+}
+
+/// Segments whose readings are bounds or knocks: their rotation and force are lost.
+fn masked(gated: &Gated) -> Vec<usize> {
+    const LOST: [&str; 3] = ["gyro_saturation", "accel_saturation", "shock"];
+    let lost = gated.found.iter().filter(|found| LOST.contains(&found.id.as_str()));
+    lost.flat_map(|found| found.place.segments.iter().copied()).collect()
 }
 
 /// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
@@ -112,6 +144,7 @@ fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: V
         demoted: Vec::new(),
         unknown: leftover.is_real(),
         dropped: Vec::new(),
+        traces: false,
         better: Vec::new(),
         p_value: leftover.p_value(),
     };
@@ -193,7 +226,7 @@ fn assemble(
         }
     });
     let poses = poses(&bench.twin);
-    let dropped = judged.dropped;
+    let (dropped, traces) = (judged.dropped, judged.traces);
     let mut reasons = Vec::new();
     let verdict = match (&unknown, effects.is_empty()) {
         (Some(_), _) => Verdict::UnknownEffect,
@@ -206,6 +239,13 @@ fn assemble(
             "The sensor rested in {poses} different pose(s): record rests on all six faces, with a full turn on each, so that \
              scale, axes and gravity's influence can show."
         ));
+    }
+    if traces {
+        reasons.push(
+            "More is left over than noise explains. What was found in the samples themselves leaves such traces; record \
+             again without it before looking further."
+                .into(),
+        );
     }
     reasons.extend(
         dropped.iter().map(|id| {

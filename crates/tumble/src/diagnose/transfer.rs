@@ -83,7 +83,7 @@ fn bench(recording: &Recording, options: &Options) -> Result<Bench, String> {
     }
     repair(&mut samples, &mut readings, &gated);
     let prepared =
-        prepare_samples(samples, &readings, origin_s, inference.missing(), conditions).map_err(|why| why.0)?;
+        prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &[]).map_err(|why| why.0)?;
     Ok(Bench::new(prepared.twin, &options.without))
 }
 
