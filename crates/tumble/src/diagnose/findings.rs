@@ -289,9 +289,7 @@ fn whole_recording(bench: &Bench, first: usize, origin_s: f64) -> Place {
 /// Mean squares before and after, on rows fitted and on rows left out.
 pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
     let (before, after) = (&selection.before, &selection.after);
-    let ledger = Ledger::new(after, |_| true);
-    let all = ledger.fit(&bench.accepted_terms(None));
-    let left = held_out::residual(bench, after, &all, None);
+    let left = held_out::left(bench, after);
     let mean = |values: &[f64], keep: &dyn Fn(usize) -> bool| {
         let kept = || values.iter().enumerate().filter(|(i, _)| keep(*i));
         kept().map(|(_, v)| v * v).sum::<f64>() / kept().count().max(1) as f64

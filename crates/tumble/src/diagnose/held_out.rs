@@ -13,33 +13,33 @@ const LEAST_HALF: f64 = 0.05;
 
 /// Halves of every position, both ways.
 pub fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
-    let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
+    let first: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let count = parameters(bench, k);
+    let terms = bench.accepted_terms(None);
+    let columns: Vec<usize> = terms[first..first + count].iter().map(|term| term.column).collect();
     let halves = [false, true].map(|late| Ledger::new(rows, |at| at.late == late));
-    let all = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
-    let taken = DVector::from_column_slice(&bench.accepted[k].taken);
-    let own: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|term| term.column).collect();
-    let [early, late] = halves.each_ref().map(|half| half.gram(&all.scales, &own, &own).trace());
+    let all = Ledger::new(rows, |_| true).fit(&terms);
+    let [early, late] = halves.each_ref().map(|half| half.gram(&all.scales, &columns, &columns).trace());
     if early.min(late) < LEAST_HALF * early.max(late) {
         return None;
     }
+    let taken = DVector::from_column_slice(&bench.accepted[k].taken);
+    // The rows have `taken` removed already, and the other effects at their best from all rows.
+    let rest = residual(bench, rows, &all, Some(k));
+    let response = |i: usize, theta: &DVector<f64>| -> f64 {
+        columns.iter().enumerate().map(|(j, &column)| rows.responses[(i, column)] * theta[j]).sum()
+    };
+    let freed = freed(terms);
     let mut sums = [0.0; 2];
     let mut fits = Vec::new();
     for (late, ledger) in [false, true].into_iter().zip(&halves) {
-        let fit = ledger.fit(&freed(bench.accepted_terms(None)));
-        let own = fit.theta.rows(before, count) + &taken;
-        let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
-        let columns: Vec<usize> = bench.accepted_terms(None)[before..before + count].iter().map(|t| t.column).collect();
-        // The rows have `taken` removed already, and the other effects at their best from all rows.
-        let rest = residual(bench, rows, &all, Some(k));
-        for (i, at) in rows.at.iter().enumerate().filter(|(_, at)| at.late != late) {
-            let _ = at;
-            let response = |theta: &DVector<f64>| -> f64 {
-                columns.iter().enumerate().map(|(j, &column)| rows.responses[(i, column)] * theta[j]).sum()
-            };
-            let without = rest[i] + response(&taken);
+        let fit = ledger.fit(&freed);
+        let own = fit.theta.rows(first, count) + &taken;
+        let covariance = fit.covariance.view((first, first), (count, count)).into_owned();
+        for i in (0..rows.at.len()).filter(|&i| rows.at[i].late != late) {
+            let without = rest[i] + response(i, &taken);
             sums[0] += without * without;
-            sums[1] += (without - response(&own)).powi(2);
+            sums[1] += (without - response(i, &own)).powi(2);
         }
         fits.push((own, covariance));
     }
@@ -80,7 +80,7 @@ fn constancy(fits: &[(DVector<f64>, DMatrix<f64>)]) -> f64 {
 }
 
 /// Probability that a χ² of `dof` degrees exceeds `value`.
-pub fn chi_square_tail(value: f64, dof: f64) -> f64 {
+fn chi_square_tail(value: f64, dof: f64) -> f64 {
     let spread = 2.0 / (9.0 * dof);
     let z = ((value / dof).cbrt() - (1.0 - spread)) / spread.sqrt();
     0.5 * libm::erfc(z / std::f64::consts::SQRT_2)

@@ -7,6 +7,7 @@ pub mod exhibits;
 pub mod findings;
 pub mod gates;
 mod held_out;
+pub mod intake;
 mod limits;
 pub mod prepare;
 pub mod report;

@@ -7,23 +7,17 @@ use super::twin::Twin;
 use super::twin::data::{Raw, stretches};
 use super::twin::noise::Noise;
 use super::twin::trajectory::Nominal;
-use crate::calibrate::{self, HostTape, Session};
+use crate::calibrate::{self, Session};
 use crate::recording::{Inference, Reading, Recording};
 
 /// Why there is no twin.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NoTwin(pub String);
 
-/// A recording through the board's segmenter and estimator, and the twin that starts from its result.
+/// What a recording came to through the board's segmenter and estimator.
 pub struct Prepared {
-    /// The twin.
+    /// Starts from the board's result.
     pub twin: Twin,
-    /// Segments as the board found them.
-    pub tape: Box<HostTape>,
-    /// The board's estimate; none where its arithmetic broke down or there was nothing to estimate from.
-    pub estimate: Option<Estimate>,
-    /// Table and box.
-    pub conditions: Conditions,
 }
 
 /// Runs segmenter, estimator and the twin's own fit.
@@ -78,5 +72,5 @@ pub fn prepare_samples(
     }
     let noise = Noise::new(&device_noise, conditions.stops);
     let twin = Twin::new(samples, stretches, start, noise, &conditions);
-    Ok(Prepared { twin, tape, estimate, conditions })
+    Ok(Prepared { twin })
 }

@@ -7,16 +7,14 @@ use tumble_core::procedure::BoxFaces;
 use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
 use super::exhibits::{self, Exhibits};
 use super::findings::{self, Finding, TIE};
-use super::gates::{self, Gated};
+use super::gates::Gated;
+use super::intake::{Intake, intake};
 use super::limits;
-use super::prepare::prepare_samples;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
 use super::search::unknown::{self, Leftover};
 use super::twin::Twin;
-use super::twin::data::Raw;
-use crate::calibrate::{self, Session};
-use crate::recording::{Inference, Reading, Recording};
+use crate::recording::Recording;
 
 /// Rests must point in at least this many different directions for a verdict on a calibration.
 const LEAST_POSES: usize = 4;
@@ -57,28 +55,11 @@ pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;
 /// Diagnoses a recording.
 pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progress) -> Outcome {
     progress("reading", 0.0);
-    let inference = Inference::of(recording);
     let origin_s = recording.origin_s();
-    let conditions = options.conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
-    let mut readings = recording.samples(&inference);
-    let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    let session = Session { readings: &readings, origin_s, lost: inference.missing(), conditions };
-    let (tape, _) = session.tape(1.0);
-    progress("samples", 0.05);
-    let gated = gates::examine(&gates::Scene {
-        recording,
-        inference: &inference,
-        samples: &samples,
-        segments: tape.segments(),
-    });
-    if let Some(stop) = &gated.stop {
-        return without_physics(&gated, stop.clone());
-    }
-    repair(&mut samples, &mut readings, &gated);
-    let masked = masked(&gated);
-    let prepared = match prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &masked) {
+    let Intake { gated, conditions, prepared } = intake(recording, options.conditions);
+    let prepared = match prepared {
         Ok(prepared) => prepared,
-        Err(why) => return without_physics(&gated, why.0),
+        Err(why) => return without_physics(&gated, why),
     };
     let mut without = options.without.clone();
     without.extend(gated.imitated.iter().cloned());
@@ -131,13 +112,6 @@ impl Judged {
         self.named = named;
         self.traces |= !dropped.is_empty();
     }
-}
-
-/// Segments whose readings are bounds or knocks: their rotation and force are lost.
-fn masked(gated: &Gated) -> Vec<usize> {
-    const LOST: [&str; 3] = ["gyro_saturation", "accel_saturation", "shock"];
-    let lost = gated.found.iter().filter(|found| LOST.contains(&found.id.as_str()));
-    lost.flat_map(|found| found.place.segments.iter().copied()).collect()
 }
 
 /// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
@@ -284,29 +258,6 @@ fn without_physics(gated: &Gated, why: String) -> Outcome {
         reasons: vec![why],
     };
     Outcome { diagnosis, exhibits: None }
-}
-
-/// Puts neighbours' means for samples that are no measurements, and axes and scales right.
-pub(super) fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
-    for &index in &gated.repaired {
-        if index == 0 || index + 1 >= samples.len() {
-            continue;
-        }
-        let (before, after) = (samples[index - 1], samples[index + 1]);
-        let share = (samples[index].t_s - before.t_s) / (after.t_s - before.t_s).max(f64::MIN_POSITIVE);
-        samples[index].rate = before.rate.lerp(&after.rate, share);
-        samples[index].force = before.force.lerp(&after.force, share);
-    }
-    if let Some((rate, force)) = &gated.remap {
-        for raw in samples.iter_mut() {
-            raw.rate = rate * raw.rate;
-            raw.force = force * raw.force;
-        }
-    }
-    for (reading, raw) in readings.iter_mut().zip(samples.iter()) {
-        reading.sample.angular_rate_rad_s = raw.rate.cast();
-        reading.sample.specific_force_mps2 = raw.force.cast();
-    }
 }
 
 /// Directions of gravity at rest that differ.

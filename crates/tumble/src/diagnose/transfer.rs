@@ -3,14 +3,10 @@
 //! On the other recording the nominal sensor is fitted anew (its biases and scales may have moved), the effect is not.
 
 use super::diagnosis::{Diagnosis, Found, OtherRecording};
-use super::gates::{self, Scene};
-use super::prepare::prepare_samples;
-use super::run::{Options, repair};
+use super::intake::intake;
+use super::run::Options;
 use super::search::bench::{Bench, Placed};
-use super::twin::data::Raw;
-use super::twin::influence::Influence;
-use crate::calibrate::{self, Session};
-use crate::recording::{Inference, Recording};
+use crate::recording::Recording;
 
 /// What a sensor keeps from one recording to the next. Not among them: steps and warm-up (they have their own time), walks
 /// (they have a size but no course), turns, table, Earth and lever arm (they belong to the day, not to the sensor).
@@ -67,23 +63,9 @@ pub fn carries(found: &Found) -> bool {
     CARRY_OVER.contains(&found.id.as_str())
 }
 
-/// The other recording's twin, its samples repaired as the first's were, and all candidates' columns.
+/// The other recording's twin, taken in as the first was, and all candidates' columns.
 fn bench(recording: &Recording, options: &Options) -> Result<Bench, String> {
-    let inference = Inference::of(recording);
-    let origin_s = recording.origin_s();
-    let conditions = options.conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
-    let mut readings = recording.samples(&inference);
-    let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    let session = Session { readings: &readings, origin_s, lost: inference.missing(), conditions };
-    let (tape, _) = session.tape(1.0);
-    let segments = tape.segments();
-    let gated = gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments });
-    if let Some(stop) = gated.stop {
-        return Err(stop);
-    }
-    repair(&mut samples, &mut readings, &gated);
-    let prepared =
-        prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &[]).map_err(|why| why.0)?;
+    let prepared = intake(recording, options.conditions).prepared?;
     Ok(Bench::new(prepared.twin, &options.without))
 }
 
@@ -107,22 +89,12 @@ fn sizes(bench: &Bench, found: &Found) -> Option<Sized> {
 /// Mean square and number of the nominal's rows when these are taken out of the samples and the nominal is fitted to what
 /// is left.
 fn mean_square(bench: &mut Bench, sized: &[(usize, f64)]) -> (f64, f64) {
-    let Bench { twin, original, influences, .. } = bench;
-    twin.samples.clone_from(original);
-    twin.fit();
+    bench.take_out(&[]);
+    bench.fit_nominal();
     for _ in 0..if sized.is_empty() { 0 } else { ROUNDS } {
-        for ((raw, original), moment) in twin.samples.iter_mut().zip(original.iter()).zip(&twin.trajectory.moments) {
-            *raw = *original;
-            for &(column, size) in sized {
-                if let Influence::Reading(reading) = &influences[column] {
-                    let push = reading(moment);
-                    raw.rate -= push.rate * size;
-                    raw.force -= push.force * size;
-                }
-            }
-        }
-        twin.fit();
+        bench.take_out(sized);
+        bench.fit_nominal();
     }
-    let rows = twin.rows(&[]);
+    let rows = bench.twin.rows(&[]);
     (rows.mean_square(|_| true), rows.at.len() as f64)
 }

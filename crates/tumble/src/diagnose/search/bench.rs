@@ -206,26 +206,27 @@ impl Bench {
                     next += 1;
                 }
             }
-            self.take_out();
+            self.take_out(&self.taken());
             self.fit_nominal();
         }
     }
 
-    fn take_out(&mut self) {
-        let columns: Vec<(usize, f64)> = self
-            .accepted
-            .iter()
-            .filter_map(|accepted| {
-                let placed = self.candidates[accepted.candidate].variants.get(accepted.variant)?;
-                Some(placed.columns.clone().zip(accepted.taken.iter().copied()))
-            })
-            .flatten()
-            .filter(|(_, taken)| *taken != 0.0)
-            .collect();
+    /// Columns of what is accepted, with what of each is to be taken out of the samples.
+    fn taken(&self) -> Vec<(usize, f64)> {
+        let columns = self.accepted.iter().filter_map(|accepted| {
+            let placed = self.candidates[accepted.candidate].variants.get(accepted.variant)?;
+            Some(placed.columns.clone().zip(accepted.taken.iter().copied()))
+        });
+        columns.flatten().filter(|(_, taken)| *taken != 0.0).collect()
+    }
+
+    /// The original readings less these columns at these sizes; what does not show in readings has no part in it. The
+    /// nominal is to be fitted anew after it.
+    pub fn take_out(&mut self, columns: &[(usize, f64)]) {
         for (index, raw) in self.twin.samples.iter_mut().enumerate() {
             *raw = self.original[index];
             let Some(moment) = self.twin.trajectory.moments.get(index) else { continue };
-            for &(column, taken) in &columns {
+            for &(column, taken) in columns {
                 if let Some(reading) = self.influences[column].reading() {
                     let push = reading(moment);
                     raw.rate -= push.rate * taken;
@@ -234,47 +235,25 @@ impl Bench {
             }
         }
     }
-}
 
-/// The floors at a level, for gyroscope and accelerometer.
-pub fn with_walks(noise: &Noise, gyro: f64, accel: f64) -> Noise {
-    Noise { bias_walk: gyro * BIAS_WALK_FLOOR, force_walk: accel * FORCE_WALK_FLOOR, ..*noise }
-}
-
-impl Bench {
     /// The model of some terms under a noise. Only their columns are carried: a hundred times faster than all.
     pub fn fit_alone(&mut self, noise: Noise, terms: &[Term]) -> Fit {
-        let (columns, influences) = self.borrow_columns(terms);
         self.twin.noise = noise;
-        let rows = self.twin.rows(&influences);
-        self.return_columns(&columns, influences);
+        let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+        let rows = self.rows_of(&columns);
         let local: Vec<_> = terms.iter().enumerate().map(|(k, term)| Term { column: k, ..*term }).collect();
         Ledger::new(&rows, |_| true).fit(&local)
     }
 
-    /// Lends the influences of some terms, in their order.
-    fn borrow_columns(&mut self, terms: &[Term]) -> (Vec<usize>, Vec<Influence>) {
-        let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
-        let lent = columns.iter().map(|&column| std::mem::replace(&mut self.influences[column], Influence::None));
-        let lent = lent.collect();
-        (columns, lent)
-    }
-
-    /// Takes them back.
-    fn return_columns(&mut self, columns: &[usize], influences: Vec<Influence>) {
-        for (&column, influence) in columns.iter().zip(influences) {
-            self.influences[column] = influence;
-        }
-    }
-}
-
-impl Bench {
     /// Rows that carry these columns alone, in this order, under the noise in force.
     pub fn rows_of(&mut self, columns: &[usize]) -> Rows {
-        let terms: Vec<Term> = columns.iter().map(|&column| Term { column, width: 1.0, mean: 0.0 }).collect();
-        let (columns, influences) = self.borrow_columns(&terms);
-        let rows = self.twin.rows(&influences);
-        self.return_columns(&columns, influences);
+        // Influences are closures, which cannot be copied: they are lent to the pass and put back.
+        let lend = |&column: &usize| std::mem::replace(&mut self.influences[column], Influence::None);
+        let lent: Vec<Influence> = columns.iter().map(lend).collect();
+        let rows = self.twin.rows(&lent);
+        for (&column, influence) in columns.iter().zip(lent) {
+            self.influences[column] = influence;
+        }
         rows
     }
 
@@ -286,4 +265,9 @@ impl Bench {
         let back = self.terms(accepted.candidate, accepted.variant, accepted.widening, &accepted.taken);
         back.into_iter().map(|term| Term { width: 1e-9 * term.width, ..term }).collect()
     }
+}
+
+/// The floors at a level, for gyroscope and accelerometer.
+pub fn with_walks(noise: &Noise, gyro: f64, accel: f64) -> Noise {
+    Noise { bias_walk: gyro * BIAS_WALK_FLOOR, force_walk: accel * FORCE_WALK_FLOOR, ..*noise }
 }

@@ -9,6 +9,7 @@ pub mod data;
 pub mod influence;
 pub mod noise;
 pub mod rows;
+mod scatter;
 pub mod state;
 pub mod trajectory;
 mod walk;
@@ -55,8 +56,8 @@ impl Prior {
         state.reset(state::ACCEL_BIAS, 3, ACCEL_BIAS_SIGMA);
         state.reset(state::LEVER, 3, noise::LEVER_SIGMA_M);
         let difference = [
-            (state::GYRO, walk::rows_of(&(self.start.gyro - nominal.gyro))),
-            (state::ACCEL, walk::rows_of(&(self.start.accel - nominal.accel))),
+            (state::GYRO, state::by_rows(&(self.start.gyro - nominal.gyro)).collect()),
+            (state::ACCEL, state::by_rows(&(self.start.accel - nominal.accel)).collect::<Vec<_>>()),
             (state::GYRO_BIAS, (self.start.gyro_bias - nominal.gyro_bias).as_slice().to_vec()),
             (state::ACCEL_BIAS, (self.start.accel_bias - nominal.accel_bias).as_slice().to_vec()),
         ];
@@ -198,11 +199,4 @@ impl Twin {
     pub fn rows(&self, influences: &[Influence]) -> Rows {
         self.pass(influences).0
     }
-
-    /// Stretches at rest on something solid.
-    pub fn solid_rests(&self) -> impl Iterator<Item = &Stretch> {
-        self.stretches.iter().filter(|stretch| matches!(stretch.deed, Deed::Rest { .. }) && !stretch.excluded)
-    }
 }
-
-mod scatter;

@@ -10,7 +10,7 @@ use tumble_core::motion::path::WHOLE_TURN;
 use super::data::{Deed, Stretch};
 use super::influence::Influence;
 use super::rows::{Address, Class, Rows};
-use super::state::{self, Drive, Observation, State, Whitened, by_rows};
+use super::state::{self, Drive, Observation, State, Whitened};
 use super::trajectory::Moment;
 use super::{Pass, noise};
 
@@ -347,9 +347,4 @@ impl<'a> Walk<'a> {
 fn lever(moment: &Moment) -> Matrix3<f64> {
     let rate = moment.rate.cross_matrix();
     rate * rate + moment.acceleration.cross_matrix()
-}
-
-/// Whole matrix by rows, for priors.
-pub(super) fn rows_of(matrix: &Matrix3<f64>) -> Vec<f64> {
-    by_rows(matrix).collect()
 }

@@ -1,0 +1,70 @@
+//! A recording through the gates, what they repair and mask, and its twin: how every diagnosis and every trial begins.
+
+use tumble_core::estimate::Conditions;
+
+use super::gates::{self, Gated, Scene};
+use super::prepare::{Prepared, prepare_samples};
+use super::twin::data::Raw;
+use crate::calibrate::{self, Session};
+use crate::recording::{Inference, Reading, Recording};
+
+/// What came of it.
+pub struct Intake {
+    /// What the gates found.
+    pub gated: Gated,
+    /// Table and box: as asked for, or as the recording states.
+    pub conditions: Conditions,
+    /// The twin, or in words why there is none.
+    pub prepared: Result<Prepared, String>,
+}
+
+/// Takes a recording in.
+pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
+    let inference = Inference::of(recording);
+    let origin_s = recording.origin_s();
+    let conditions = conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
+    let mut readings = recording.samples(&inference);
+    let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
+    let lost = inference.missing();
+    let (tape, _) = Session { readings: &readings, origin_s, lost, conditions }.tape(1.0);
+    let gated =
+        gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments() });
+    if let Some(stop) = &gated.stop {
+        let prepared = Err(stop.clone());
+        return Intake { gated, conditions, prepared };
+    }
+    repair(&mut samples, &mut readings, &gated);
+    let masked = masked(&gated);
+    let prepared = prepare_samples(samples, &readings, origin_s, lost, conditions, &masked).map_err(|why| why.0);
+    Intake { gated, conditions, prepared }
+}
+
+/// Segments whose readings are bounds or knocks: their rotation and force are lost.
+fn masked(gated: &Gated) -> Vec<usize> {
+    const LOST: [&str; 3] = ["gyro_saturation", "accel_saturation", "shock"];
+    let lost = gated.found.iter().filter(|found| LOST.contains(&found.id.as_str()));
+    lost.flat_map(|found| found.place.segments.iter().copied()).collect()
+}
+
+/// Puts neighbours' means for samples that are no measurements, and axes and scales right.
+fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
+    for &index in &gated.repaired {
+        if index == 0 || index + 1 >= samples.len() {
+            continue;
+        }
+        let (before, after) = (samples[index - 1], samples[index + 1]);
+        let share = (samples[index].t_s - before.t_s) / (after.t_s - before.t_s).max(f64::MIN_POSITIVE);
+        samples[index].rate = before.rate.lerp(&after.rate, share);
+        samples[index].force = before.force.lerp(&after.force, share);
+    }
+    if let Some((rate, force)) = &gated.remap {
+        for raw in samples.iter_mut() {
+            raw.rate = rate * raw.rate;
+            raw.force = force * raw.force;
+        }
+    }
+    for (reading, raw) in readings.iter_mut().zip(samples.iter()) {
+        reading.sample.angular_rate_rad_s = raw.rate.cast();
+        reading.sample.specific_force_mps2 = raw.force.cast();
+    }
+}
