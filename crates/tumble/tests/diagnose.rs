@@ -2,6 +2,7 @@
 
 use tumble::diagnose::carry::carry;
 use tumble::diagnose::diagnosis::Verdict;
+use tumble::diagnose::transfer::try_on;
 use tumble::diagnose::{Options, Outcome, diagnose};
 use tumble::recording::{BoxFaces, Metadata, Recording, Row, TurnStops};
 use tumble_sim::effect::Effect;
@@ -54,6 +55,16 @@ fn g_sensitivity_is_named_with_its_numbers_and_can_be_carried() {
     let (readings, carried) = carry(&recording, conditions, &["gyro_g_sensitivity".into()]).expect("it can be carried");
     assert_eq!((readings.len(), carried.len(), carried[0].parameters.len()), (recording.rows.len(), 1, 9));
     assert!(carry(&recording, conditions, &["shock".into()]).is_err());
+}
+
+#[test]
+fn an_effect_of_the_rate_is_taken_out_of_a_further_recording_too() {
+    let (recording, _) = recording(Scheme::Double, 4, Some("gyro_scale_cubic=12000"));
+    let mut diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!(diagnosis.effects[0].id, "gyro_scale_cubic", "{diagnosis:?}");
+    try_on(&mut diagnosis, &recording, "again.csv", &Options { seed: 1, ..Options::default() });
+    let other = &diagnosis.effects[0].other_recordings[0];
+    assert!(other.after < 0.6 * other.before, "{other:?}");
 }
 
 #[test]
