@@ -19,6 +19,10 @@ use crate::reference;
 /// nothing else differs.
 const RECORDS: usize = 60_000;
 const SEGMENTS: usize = 1024;
+/// Stillness limits, in units of the board's, tried until a session gives a result. The board's admit a trembling of three
+/// times the sensor's noise (0.3 °/s) and tell a person to let go; a recording cannot be told, and a hand's tremor of
+/// 0.05° at 8–12 Hz (Elble & Koller 1990) is 3 °/s. Four times is where slow motion begins to pass for rest.
+const TOLERANCES: [f32; 3] = [1.0, 2.0, 4.0];
 /// Records walked between two signs of life.
 const SLICE: usize = 64;
 
@@ -82,12 +86,13 @@ impl Session<'_> {
 
     /// Computes it with any method. A reference starts from the device's result and noise, and is judged by the same judge.
     pub fn run(&self, method: Method, progress: &mut impl FnMut(f32)) -> Outcome {
-        let (tape, full_s) = self.tape(1.0);
         let conditions = match method {
             Method::Gravity => Conditions { faces: BoxFaces::Unknown, ..self.conditions },
             Method::TwoStep(_) => Conditions { faces: BoxFaces::Square, ..self.conditions },
             Method::Device | Method::Batch => self.conditions,
         };
+        let tolerance = self.tolerance();
+        let (tape, full_s) = self.tape(tolerance);
         let estimate = estimate(&tape, conditions, progress).and_then(|(mut estimate, noise)| {
             let found = match method {
                 Method::Device => return Ok(estimate),
@@ -108,7 +113,30 @@ impl Session<'_> {
         if let Some(full_s) = full_s {
             outcome.warn(format!("The session's memory was full at {full_s:.1} s: what came later was left out."));
         }
+        if tolerance > TOLERANCES[0] {
+            outcome.warn(format!(
+                "The rests tremble: they were found with limits {tolerance} times the board's. Put the sensor down and let go at each."
+            ));
+        }
         outcome
+    }
+
+    /// The narrowest stillness limits under which nothing is said for want of rests; else the narrowest with a result that
+    /// the judge does not reject; else the board's own, 1.
+    pub fn tolerance(&self) -> f32 {
+        let mut usable = None;
+        for tolerance in TOLERANCES {
+            let (tape, _) = self.tape(tolerance);
+            let Ok((estimate, _)) = estimate(&tape, self.conditions, &mut |_| {}) else { continue };
+            let judgement = judge::judge(&estimate, &tape, self.lost).0;
+            let accepted = judgement.verdict != Verdict::Rejected;
+            let content = !judgement.reasons.iter().any(wants_rest);
+            if content {
+                return if accepted { tolerance } else { usable.unwrap_or(TOLERANCES[0]) };
+            }
+            usable = usable.or(accepted.then_some(tolerance));
+        }
+        usable.unwrap_or(TOLERANCES[0])
     }
 
     /// Everything onto a tape with the stillness limits at `tolerance` times the usual; if it was full before the end,
@@ -152,6 +180,18 @@ impl Outcome {
             self.verdict = Verdict::AcceptedWithWarnings;
         }
     }
+}
+
+/// Reasons that rests not recognised as such bring about.
+const fn wants_rest(reason: &Reason) -> bool {
+    matches!(
+        reason,
+        Reason::FacesMissing { .. }
+            | Reason::TurnsMissing { .. }
+            | Reason::NotObservable { .. }
+            | Reason::Uncertain { .. }
+            | Reason::BiasDrift { .. }
+    )
 }
 
 /// What the estimator left out by itself stands among the reasons only.

@@ -26,7 +26,8 @@ pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
     let mut readings = recording.samples(&inference);
     let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
     let lost = inference.missing();
-    let (tape, _) = Session { readings: &readings, origin_s, lost, conditions }.tape(1.0);
+    let session = Session { readings: &readings, origin_s, lost, conditions };
+    let (tape, _) = session.tape(session.tolerance());
     let gated =
         gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments() });
     if let Some(stop) = &gated.stop {

@@ -46,7 +46,7 @@ pub fn prepare_samples(
     masked: &[usize],
 ) -> Result<Prepared, NoTwin> {
     let session = Session { readings, origin_s, lost, conditions };
-    let (tape, _) = session.tape(1.0);
+    let (tape, _) = session.tape(session.tolerance());
     if !tape.segments().iter().any(Segment::is_usable_still) {
         return Err(NoTwin("no rest was found: hold the sensor still for two seconds now and then".into()));
     }
