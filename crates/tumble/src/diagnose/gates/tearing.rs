@@ -6,7 +6,7 @@
 //! that fail the size or the straddling. If C such occur, a spike of another cause falls on the right size (share
 //! 2·tolerance/500 for either sign) astride a boundary (share (|step| + 2·tolerance)/256) by chance: expected
 //! E = (C + 0.03)·ρ with ρ that product; one recording in thirty has such a spike of one channel alone. Poisson's tail of the
-//! count against E.
+//! count against E. A channel whose own noise would pass for a torn reading once in a thousand recordings is left out.
 
 use super::chance::{LN_ALARM, ln_poisson_tail};
 use super::tell::{Outcome, found, limit, untestable, value};
@@ -42,6 +42,10 @@ pub fn examine(view: &View) -> Outcome {
     for (range, triad) in ranges {
         for channel in triad {
             let Some(count) = count_of(range, view.step[channel]) else { continue };
+            let noise = view.sigma[channel] / count;
+            if by_noise(noise, view.channels[channel].len()) > 1e-3 {
+                continue;
+            }
             tested = true;
             for spike in spikes(view, channel, count) {
                 share = share.max(spike.share);
@@ -56,7 +60,11 @@ pub fn examine(view: &View) -> Outcome {
     }
     if !tested {
         return Outcome {
-            limit: untestable(&CARD, "readings", "readings are not whole counts of a known range"),
+            limit: untestable(
+                &CARD,
+                "readings",
+                "readings are not whole counts of a known range, or noise alone jumps by 256 counts",
+            ),
             ..Outcome::default()
         };
     }
@@ -81,10 +89,21 @@ fn count_of(range: Known, step: f64) -> Option<f64> {
     (range.basis != Basis::Largest && near).then_some(step)
 }
 
+/// How far a spike may lie from 256 counts, counts.
+fn tolerance(noise: f64) -> f64 {
+    if noise.is_finite() { (4.0 * noise).max(6.0) } else { 6.0 }
+}
+
+/// Samples that noise alone, counts, brings within the tolerance of 256: three differences of two readings, either sign, and
+/// Q(z) ≤ ½ exp(−z²/2).
+fn by_noise(noise: f64, samples: usize) -> f64 {
+    let z = (BYTE - tolerance(noise)).max(0.0) / (std::f64::consts::SQRT_2 * noise);
+    if noise > 0.0 { 3.0 * samples as f64 * (-0.5 * z * z).exp() } else { 0.0 }
+}
+
 fn spikes(view: &View, channel: usize, count: f64) -> Vec<Spike> {
     let values = &view.channels[channel];
-    let noise = view.sigma[channel] / count;
-    let tolerance = if noise.is_finite() { (4.0 * noise).max(6.0) } else { 6.0 };
+    let tolerance = tolerance(view.sigma[channel] / count);
     let c = |i: usize| values[i] / count;
     let bend = |i: usize| c(i) - 0.5 * (c(i - 1) + c(i + 1));
     let mut spikes = Vec::new();
