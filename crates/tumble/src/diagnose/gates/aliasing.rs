@@ -24,7 +24,7 @@ const LEAST_DEG: f64 = 0.15;
 const CHUNK_S: f64 = 4.0;
 const LEAST_TURNED_DEG: f64 = 30.0;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "undersampling",
     name: "sampled too slowly for its bandwidth",
     equation: "the rotation integral changes when every other sample is left out",

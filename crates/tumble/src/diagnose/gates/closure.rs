@@ -15,7 +15,7 @@ const SCALE: f64 = 0.06;
 const FLOOR_DEG: f64 = 1.0;
 const QUARTER_DEG: f64 = 90.0;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "incomplete_turn",
     name: "turns stop short of a whole revolution",
     equation: "turned by ±(360° − δ)",

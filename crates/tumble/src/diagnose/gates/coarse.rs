@@ -15,7 +15,7 @@ use crate::recording::Basis;
 const IMITATED: &[&str] =
     &["gyro_dead_zone", "gyro_scale_cubic", "gyro_scale_asymmetry", "gyro_bias_step", "gyro_g_squared"];
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "gyro_coarse_quantization",
     name: "gyro readings come in coarse steps",
     equation: "reading = q·round(rate/q), q larger than the noise",

@@ -14,7 +14,7 @@ use crate::diagnose::catalogue::Card;
 const LEAST_SHARE: f64 = 5e-4;
 const LONG_S: f64 = 0.1;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "dropped_samples",
     name: "samples are missing",
     equation: "t_k+1 − t_k = (1 + m)·T, m samples lost",

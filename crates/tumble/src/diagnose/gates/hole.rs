@@ -10,7 +10,7 @@ use super::tell::{Outcome, found, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "gyro_dead_zone",
     name: "gyro does not see slow turns",
     equation: "|rate| < d reads as zero, more reads as it is: a hole in the histogram",

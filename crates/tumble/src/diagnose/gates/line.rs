@@ -18,7 +18,7 @@ const LEAST_HZ: f64 = 3.0;
 const TREMOR_HZ: std::ops::Range<f64> = 5.0..15.0;
 const TREMBLING_DPS: f64 = 0.3;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "vibration_line",
     name: "a steady vibration",
     equation: "reading += A·sin(2πFt + φ)",

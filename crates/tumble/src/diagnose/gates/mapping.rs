@@ -30,7 +30,7 @@ const FACTORS: [f64; 9] = [1.0, 0.5, 2.0, 0.25, 4.0, 0.125, 8.0, DEGREE, 1.0 / D
 /// Likewise forces.
 const FORCE_FACTORS: [f64; 9] = [0.5, 2.0, 0.25, 4.0, 0.125, 8.0, 1.0 / G, G, 1e-3];
 
-const AXES: Card = Card {
+pub(super) const AXES: Card = Card {
     id: "axis_mapping",
     name: "axes exchanged or reversed",
     equation: "true = P·read, P a signed permutation",
@@ -40,7 +40,7 @@ const AXES: Card = Card {
     separate_by: "turn the sensor by hand about each axis in turn, right-handed: the reading of that axis must be positive",
 };
 
-const SCALE: Card = Card {
+pub(super) const SCALE: Card = Card {
     id: "wrong_full_scale",
     name: "range is not the one stated",
     equation: "read = k·true for a whole triad",

@@ -23,6 +23,7 @@ mod tell;
 mod view;
 mod wobble;
 
+use super::catalogue::Card;
 use super::diagnosis::{Found, Limit};
 use super::twin::data::Raw;
 use crate::recording::{Inference, Recording};
@@ -65,6 +66,27 @@ pub struct Gated {
     /// Detection limits.
     pub limits: Vec<Limit>,
 }
+
+/// What each gate can name.
+pub const CARDS: [&Card; 17] = [
+    &aliasing::CARD,
+    &closure::CARD,
+    &coarse::CARD,
+    &gaps::CARD,
+    &hole::CARD,
+    &line::CARD,
+    &mapping::AXES,
+    &mapping::SCALE,
+    &rocking::CARD,
+    &saturation::GYRO,
+    &saturation::ACCEL,
+    &shock::CARD,
+    &stale::CARD,
+    &stamps::JITTER,
+    &stamps::STEPS,
+    &tearing::CARD,
+    &wobble::CARD,
+];
 
 /// All gates.
 pub fn examine(scene: &Scene) -> Gated {

@@ -24,7 +24,7 @@ const FLOOR_HZ: f64 = 8.0;
 const PIVOT_M: f64 = 2.0;
 const ONE_OVER_F: f64 = 3.0;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "table_rocking",
     name: "table rocks",
     equation: "R_table = R(h, A·sin(2πft + φ)): rate and gravity's direction swing together",

@@ -26,7 +26,7 @@ const IMITATED_ACCEL: &[&str] = &["accel_cubic", "accel_quadratic"];
 /// What the parabola is fitted to, s; it is drawn on for a quarter of that.
 const FIT_S: f64 = 0.08;
 
-const GYRO: Card = Card {
+pub(super) const GYRO: Card = Card {
     id: "gyro_saturation",
     name: "gyro clips",
     equation: "reading = clamp(rate, −L, L)",
@@ -36,7 +36,7 @@ const GYRO: Card = Card {
     separate_by: "turn more slowly, or set a wider range: flat tops disappear",
 };
 
-const ACCEL: Card = Card {
+pub(super) const ACCEL: Card = Card {
     id: "accel_saturation",
     name: "accelerometer clips",
     equation: "reading = clamp(force, −L, L)",

@@ -24,7 +24,7 @@ const TIMES: f64 = 12.0;
 const SAME_RAD: f64 = 0.052;
 const SAME_DPS: f64 = 3.0;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "shock",
     name: "one knock",
     equation: "force += A·u·sin(πt/T) for T of 5 to 30 ms",

@@ -15,7 +15,7 @@ const WINDOW_S: f64 = 2.0;
 /// Share of pairs below which nothing is told.
 const LEAST_SHARE: f64 = 1e-3;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "duplicated_samples",
     name: "old values under new stamps",
     equation: "all channels of sample k equal those of sample k − 1",

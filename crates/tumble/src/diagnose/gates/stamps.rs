@@ -22,7 +22,7 @@ const LEAST_SHARE: f64 = 0.02;
 /// Least step as a share of the interval: 1e-4 s of text is 2 % of 5 ms.
 const LEAST_STEP: f64 = 0.1;
 
-const JITTER: Card = Card {
+pub(super) const JITTER: Card = Card {
     id: "timestamp_jitter",
     name: "stamps scatter",
     equation: "t_stamp = t_true + n, n white: successive intervals are anti-correlated",
@@ -32,7 +32,7 @@ const JITTER: Card = Card {
     separate_by: "stamp samples where they are taken, by the sensor's data-ready interrupt, or number them and divide by the rate",
 };
 
-const STEPS: Card = Card {
+pub(super) const STEPS: Card = Card {
     id: "timestamp_quantization",
     name: "stamps come in coarse steps",
     equation: "t_stamp = q·floor(t_true/q)",

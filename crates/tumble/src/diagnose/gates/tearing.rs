@@ -18,7 +18,7 @@ const BYTE: f64 = 256.0;
 /// Spikes that are looked at, counts.
 const SPIKES: std::ops::Range<f64> = 100.0..600.0;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "byte_tearing",
     name: "bytes of two samples in one reading",
     equation: "c_out = 256·floor(c_k−1/256) + c_k mod 256, or the other way round",

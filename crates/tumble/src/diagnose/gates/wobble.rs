@@ -20,7 +20,7 @@ use crate::diagnose::catalogue::Card;
 
 const LEAST_DEG: f64 = 1.15;
 
-const CARD: Card = Card {
+pub(super) const CARD: Card = Card {
     id: "spin_axis_wobble",
     name: "spin axis wobbles",
     equation: "the box leans by w while it turns: R(t)·n circles about its mean",

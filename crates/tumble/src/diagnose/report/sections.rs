@@ -5,6 +5,7 @@ use super::{channels, evidence as bars, heat, isolable, scatter, words};
 use crate::diagnose::catalogue::STRUCTURAL;
 use crate::diagnose::diagnosis::{Diagnosis, Found, Place};
 use crate::diagnose::exhibits::Exhibits;
+use crate::diagnose::gates;
 
 /// What a residual is, said once.
 const RESIDUALS: &str = "A twin of the sensor follows the recording and predicts every reading from the motion alone. What it \
@@ -182,8 +183,8 @@ pub fn limits(diagnosis: &Diagnosis) -> String {
     if diagnosis.detection_limits.is_empty() {
         return section("limits", "What could have been seen", &paragraph("No effect could be tested."));
     }
-    let typical =
-        |id: &str| STRUCTURAL.iter().find(|effect| effect.card.id == id).map_or("", |effect| effect.card.typical);
+    let cards = || STRUCTURAL.iter().map(|effect| effect.card).chain(gates::CARDS);
+    let typical = |id: &str| cards().find(|card| card.id == id).map_or("", |card| card.typical);
     let (seen, blind): (Vec<_>, Vec<_>) = diagnosis.detection_limits.iter().partition(|limit| limit.testable);
     let size = |limit: f64| if limit < 1e90 { words::figure(limit) } else { "no size".into() };
     let rows: Vec<Vec<String>> = seen

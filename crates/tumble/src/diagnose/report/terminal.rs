@@ -92,7 +92,12 @@ fn word(verdict: Verdict) -> &'static str {
 /// Six lines at most, or four.
 fn effect(story: &mut Story, found: &Found, exhibits: Option<&Exhibits>, full: bool) {
     story.say("where", &place(&found.place, exhibits), 1);
-    story.say("what", &format!("{}: {}; {}", found.id, found.equation, numbers(found)), if full { 2 } else { 1 });
+    let (lines, mut shown) = (if full { 2 } else { 1 }, NUMBERS);
+    let what = |shown: usize| format!("{}: {}; {}", found.id, found.equation, numbers(found, shown));
+    while shown > 1 && wrap(&what(shown), WIDTH - LABEL).len() > lines {
+        shown -= 1;
+    }
+    story.say("what", &what(shown), lines);
     let rival = match &found.runner_up {
         Some(rival) => format!("; next best {}, {:.1} less", rival.id, rival.gap),
         None => String::new(),
@@ -118,19 +123,19 @@ fn place(place: &crate::diagnose::diagnosis::Place, exhibits: Option<&Exhibits>)
     format!("{channels}; {:.1} to {:.1} s{segments}", place.start_s, place.end_s)
 }
 
-/// Those that stand out most, in the effect's own order.
-fn numbers(found: &Found) -> String {
+/// Those `shown` that stand out most, in the effect's own order.
+fn numbers(found: &Found, shown: usize) -> String {
     let mut order: Vec<usize> = (0..found.parameters.len()).collect();
     let significance = |i: usize| words::significance(&found.parameters[i]);
     order.sort_by(|a, b| significance(*b).total_cmp(&significance(*a)));
-    order.truncate(NUMBERS);
+    order.truncate(shown);
     order.sort_unstable();
-    let shown: Vec<String> = order.into_iter().map(|i| words::parameter(&found.parameters[i])).collect();
-    let more = match found.parameters.len().saturating_sub(NUMBERS) {
+    let texts: Vec<String> = order.into_iter().map(|i| words::parameter(&found.parameters[i])).collect();
+    let more = match found.parameters.len().saturating_sub(shown) {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
-    shown.join(", ") + &more
+    texts.join(", ") + &more
 }
 
 fn fit(story: &mut Story, diagnosis: &Diagnosis) {
