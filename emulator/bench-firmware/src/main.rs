@@ -114,6 +114,13 @@ fn bench_observe_34(filter: &mut Filter, row: &Row) {
     black_box(&filter.observe(row, -2e-3, 3e-4));
 }
 
+/// Of one state, as the step does it three times.
+#[unsafe(no_mangle)]
+#[inline(never)]
+fn bench_paper_observe(filter: &mut paper::Filter<f32>) {
+    black_box(&filter.observe(paper::POSITION, 1e-4, 1e-6));
+}
+
 /// Three observations at once, as the product takes in gravity in a turn: 34 columns.
 #[unsafe(no_mangle)]
 #[inline(never)]
@@ -163,6 +170,8 @@ fn paper_step() {
         bench_end();
         // Of the same covariance, and on to the next.
         bench_paper_sparse(data);
+        bench_end();
+        bench_paper_observe(&mut data.filter);
         bench_end();
     }
 }

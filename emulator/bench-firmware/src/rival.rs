@@ -14,7 +14,8 @@ const OBSERVED: usize = 3;
 pub enum Ask<'a> {
     /// A prediction, and this position.
     Step(&'a Vector3<f32>),
-    /// Where it stands.
+    /// Where it stands: for the test.
+    #[allow(dead_code, reason = "the board's bench does not ask")]
     Read(&'a mut State<f32>, &'a mut Covariance<f32>),
 }
 

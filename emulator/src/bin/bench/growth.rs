@@ -1,13 +1,41 @@
 //! How the cost of an estimate grows with its session.
 
+use tumble_core::estimate::state::STATES;
+use tumble_core::estimate::two_step::filter;
+
 use crate::feed::Session;
 
-/// Prints a table, and fits exponents. Refuses what the board did not estimate as the host did.
+/// Multiply–adds that one observation needs: the gain, the state, and P's lower triangle.
+fn multiply_adds(states: usize, coefficients: usize) -> usize {
+    coefficients * states + 2 * states + states * (states + 1) / 2
+}
+
+/// Prints how one observation's cost grows with the number of states; `small` and `large` are instructions, of one coefficient
+/// and of this many.
+pub fn states(small: f64, large: f64, coefficients: usize) {
+    let counts = [multiply_adds(filter::STATES, 1), multiply_adds(STATES, coefficients)];
+    println!("\n{:27}{:>8}{:>17}{:>15}", "one observation", "states", "multiply-adds", "instructions");
+    for (states, count, instructions) in [(filter::STATES, counts[0], small), (STATES, counts[1], large)] {
+        println!("{:27}{states:>8}{count:>17}{instructions:>15.0}", "");
+    }
+    let power = |a: f64, b: f64| exponent(&[(filter::STATES as f64, a), (STATES as f64, b)]);
+    println!(
+        "From {} to {STATES} states multiply-adds grow to the power {:.2}, instructions {:.2}.",
+        filter::STATES,
+        power(counts[0] as f64, counts[1] as f64),
+        power(small, large)
+    );
+}
+
+/// Prints a table of whole estimates, and fits exponents. Refuses what the board did not estimate as the host did.
 pub fn print(sessions: &[Session], results: &[(u32, f32)], instructions: &[u64]) -> Result<(), String> {
-    println!("\n{:27}{:>8}{:>9}{:>8}{:>15}{:>15}", "a whole estimate", "s", "records", "passes", "instructions", "a pass");
+    println!(
+        "\n{:27}{:>8}{:>9}{:>8}{:>15}{:>15}",
+        "a whole estimate", "s", "records", "passes", "instructions", "a pass"
+    );
     for ((session, result), count) in sessions.iter().zip(results).zip(instructions) {
         if result.0 != session.expected.0 || result.1 != session.expected.1 {
-            println!("{}", format!("{}: the board found {result:?}, the host {:?}", session.name, session.expected));
+            return Err(format!("{}: the board found {result:?}, the host {:?}", session.name, session.expected));
         }
         let pass = count / u64::from(result.0);
         println!(
@@ -27,8 +55,11 @@ pub fn print(sessions: &[Session], results: &[(u32, f32)], instructions: &[u64])
     let fit = |range: std::ops::Range<usize>, size: fn(&Session) -> f64| {
         exponent(&range.map(|index| (size(&sessions[index]), cost(index))).collect::<Vec<_>>())
     };
-    println!("A pass grows with the session's length to the power {:.2}, with the number of poses {:.2}.",
-        fit(0..3, |session| session.seconds), fit(3..6, |session| session.records as f64));
+    println!(
+        "A pass grows with the session's length to the power {:.2}, with the number of poses {:.2}.",
+        fit(0..3, |session| session.seconds),
+        fit(3..6, |session| session.records as f64)
+    );
     Ok(())
 }
 
@@ -37,8 +68,7 @@ pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
     let n = logs.len() as f64;
     let (x, y) = logs.iter().fold((0.0, 0.0), |sum, log| (sum.0 + log.0 / n, sum.1 + log.1 / n));
-    let (xy, xx) = logs.iter().fold((0.0, 0.0), |sum, log| {
-        (sum.0 + (log.0 - x) * (log.1 - y), sum.1 + (log.0 - x).powi(2))
-    });
+    let (xy, xx) =
+        logs.iter().fold((0.0, 0.0), |sum, log| (sum.0 + (log.0 - x) * (log.1 - y), sum.1 + (log.0 - x).powi(2)));
     xy / xx
 }

@@ -8,16 +8,18 @@ mod feed;
 mod growth;
 
 use emulator::{AtRest, Board, BoardError, BoardOptions};
+use tumble_core::estimate::two_step::filter::STEP_MULTIPLY_ADDS;
 
 const USAGE: &str = "bench [--firmware ELF]
 
   --firmware ELF    the image of bench-firmware; otherwise the environment's TUMBLE_FIRMWARE";
 
 /// What is measured: the function, in words, and the function that it is compared with.
-const MEASURED: [(&str, &str, Option<&str>); 9] = [
+const MEASURED: [(&str, &str, Option<&str>); 10] = [
     ("bench_paper_sparse", "15-state filter step, block-sparse f32", None),
     ("bench_paper_dense", "the same step, dense nalgebra 15x15", Some("bench_paper_sparse")),
     ("bench_paper_minikalman", "the same step, minikalman 0.8.1", Some("bench_paper_sparse")),
+    ("bench_paper_observe", "15-state filter, observe one state", None),
     ("bench_propagate", "43-state filter, propagate", None),
     ("bench_observe_11", "43-state filter, observe, 11 coefficients", None),
     ("bench_observe_34", "43-state filter, observe, 34 coefficients", Some("bench_observe_11")),
@@ -48,9 +50,8 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let counted = std::fs::read(&image)
-        .map_err(|error| format!("{}: {error}", image.display()))
-        .and_then(|elf| measure(&elf));
+    let counted =
+        std::fs::read(&image).map_err(|error| format!("{}: {error}", image.display())).and_then(|elf| measure(&elf));
     match counted {
         Ok(()) => ExitCode::SUCCESS,
         Err(why) => {
@@ -70,6 +71,7 @@ fn measure(elf: &[u8]) -> Result<(), String> {
     }
     let (calls, results) = count(elf, &sessions).map_err(|error| error.to_string())?;
     print(&calls);
+    growth::states(mean(&calls["bench_paper_observe"]), mean(&calls["bench_observe_11"]), 11);
     growth::print(&sessions, &results, &calls["bench_estimate"])
 }
 
@@ -177,12 +179,16 @@ fn print(calls: &Calls) {
         "{:47}{:>7}{:>13}{:>9}{:>9}{:>8}",
         "instructions on the Cortex-M4F", "calls", "mean", "least", "most", "ratio"
     );
-    for (name, words, reference) in MEASURED {
+    for (name, words, reference) in MEASURED.into_iter().filter(|measured| measured.0 != "bench_estimate") {
         let counts = &calls[name];
         let (least, most) = (counts.iter().min().unwrap_or(&0), counts.iter().max().unwrap_or(&0));
         let ratio = reference.map_or(String::new(), |other| format!("{:.2}", mean(counts) / mean(&calls[other])));
         println!("{words:47}{:>7}{:>13.1}{least:>9}{most:>9}{ratio:>8}", counts.len(), mean(counts));
     }
+    println!(
+        "A sparse step needs {STEP_MULTIPLY_ADDS} multiply-adds: {:.1} instructions each.",
+        mean(&calls["bench_paper_sparse"]) / STEP_MULTIPLY_ADDS as f64
+    );
     let share = mean(&calls["bench_segmenter"]) * SAMPLES_HZ / CORE_HZ;
     println!("All at opt-level 3. The product is linked at \"s\", which takes more (bench-firmware/Cargo.toml).");
     println!("The segmenter's instructions at {SAMPLES_HZ:.0} Hz are {:.2} % of 96 million a second.", share * 100.0);
