@@ -1,7 +1,10 @@
-//! The 15-state filter's step, sparse against dense nalgebra, in the same run: `cargo bench -p host-tests --bench filter`.
+//! The 15-state filter's step, sparse against dense nalgebra and the `minikalman` crate, in the same run: `cargo bench -p host-tests --bench filter`.
 //!
 //! Times on a host vary by some per cent; on the emulated core the same two functions, `dense::step` and
 //! `dense::sparse_step` (never inlined), can be counted in instructions.
+
+#[path = "../../emulator/bench-firmware/src/rival.rs"]
+mod rival;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -55,8 +58,23 @@ fn compare<T: Real>(name: &str) {
     println!("{name}: sparse {sparse:.0} ns, dense {dense:.0} ns, {:.1} times", dense / sparse);
 }
 
+/// The `minikalman` crate's step against ours, both `f32`.
+fn compare_with_minikalman() {
+    let (state, covariance) = (State::<f32>::zeros(), Covariance::<f32>::identity() * 1e-4);
+    let (motion, position, variance) = (motion::<f32>(), Vector3::repeat(1e-4f32), 1e-6);
+    let (transition, process) = (dense::transition(&motion), dense::process(&motion));
+    let mut filter = Filter::new(state, covariance);
+    let sparse = time(|| {
+        dense::sparse_step(black_box(&mut filter), black_box(&motion), &position, variance);
+    });
+    let mut rival = rival::filter(&state, &covariance, &transition, &process, variance);
+    let theirs = time(|| black_box(&mut rival)(rival::Ask::Step(black_box(&position))));
+    println!("f32: sparse {sparse:.0} ns, minikalman 0.8.1 {theirs:.0} ns, {:.1} times", theirs / sparse);
+}
+
 fn main() {
     println!("{STEP_MULTIPLY_ADDS} multiply-adds a sparse step");
     compare::<f32>("f32");
     compare::<f64>("f64");
+    compare_with_minikalman();
 }

@@ -1,4 +1,5 @@
-//! `cargo xtask bench`: exact instructions of the core's hot spots on the emulated core, and the size of the firmware.
+//! `cargo xtask bench`: exact instructions of the core's hot spots and of whole estimates on the emulated
+//! core, the host's time for a step, and the size of the firmware.
 
 use std::path::PathBuf;
 
@@ -15,6 +16,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let image = image(toolchain)?;
     let product = firmware::build(toolchain, Board::BlackPill)?;
     emulator::program("bench", &image, &arguments.rest)?;
+    println!("\nhost time of a step");
+    process::run(process::cargo().current_dir(root()).args([
+        "bench",
+        "--quiet",
+        "-p",
+        "host-tests",
+        "--bench",
+        "filter",
+    ]))?;
     size::report(Board::BlackPill, &product).map(drop)
 }
 

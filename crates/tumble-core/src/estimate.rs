@@ -1,6 +1,7 @@
 //! From the tape to numbers with sigmas. `docs/method.md` has the equations.
 
 pub mod closures;
+pub mod covariance;
 pub mod device;
 pub mod drift;
 pub mod facets;

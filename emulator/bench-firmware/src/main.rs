@@ -4,14 +4,16 @@
 #![no_std]
 #![no_main]
 
+mod estimate;
 mod motion;
+mod rival;
 
 use core::arch::asm;
 use core::hint::black_box;
 
 use nalgebra::{SMatrix, Vector3};
 use tumble_core::estimate::filter::{AttitudeDrive, Filter};
-use tumble_core::estimate::state::{Block, Row, STATES};
+use tumble_core::estimate::state::{Block, Row, Rows, STATES};
 use tumble_core::estimate::two_step::{dense, filter as paper};
 
 /// Calls of what always does the same work.
@@ -96,6 +98,12 @@ fn bench_paper_dense(paper: &Paper) {
 
 #[unsafe(no_mangle)]
 #[inline(never)]
+fn bench_paper_minikalman(rival: &mut dyn FnMut(rival::Ask<'_>), position: &Vector3<f32>) {
+    rival(rival::Ask::Step(position));
+}
+
+#[unsafe(no_mangle)]
+#[inline(never)]
 fn bench_observe_11(filter: &mut Filter, row: &Row) {
     black_box(&filter.observe(row, 1e-3, 1e-4));
 }
@@ -104,6 +112,20 @@ fn bench_observe_11(filter: &mut Filter, row: &Row) {
 #[inline(never)]
 fn bench_observe_34(filter: &mut Filter, row: &Row) {
     black_box(&filter.observe(row, -2e-3, 3e-4));
+}
+
+/// Of one state, as the step does it three times.
+#[unsafe(no_mangle)]
+#[inline(never)]
+fn bench_paper_observe(filter: &mut paper::Filter<f32>) {
+    black_box(&filter.observe(paper::POSITION, 1e-4, 1e-6));
+}
+
+/// Three observations at once, as the product takes in gravity in a turn: 34 columns.
+#[unsafe(no_mangle)]
+#[inline(never)]
+fn bench_observe_vector(filter: &mut Filter, rows: &Rows<3>) {
+    black_box(&filter.observe_vector(rows, &Vector3::new(1e-3, -2e-3, 3e-3), 1e-4));
 }
 
 #[unsafe(no_mangle)]
@@ -127,14 +149,29 @@ fn row(coefficients: usize) -> Row {
         .fold(Row::new(), |row, k| row.with(Block::Attitude, k * STATES / coefficients, 1.0 - 0.05 * k as f32))
 }
 
+fn rows() -> Rows<3> {
+    let mut rows = Rows::new();
+    for k in 0..34 {
+        let k = k as f32;
+        rows.set(Block::Attitude, (k * 1.25) as usize, [1.0 - 0.05 * k, 0.02 * k, 0.3 - 0.01 * k]);
+    }
+    rows
+}
+
 fn paper_step() {
     let mut data = Paper::new();
+    let (state, covariance) = (data.filter.state(), data.filter.covariance());
+    let mut rival = rival::filter(state, covariance, &data.transition, &data.process, data.variance);
     let data = black_box(&mut data);
     for _ in 0..REPETITIONS {
+        bench_paper_minikalman(&mut rival, &data.position);
+        bench_end();
         bench_paper_dense(data);
         bench_end();
         // Of the same covariance, and on to the next.
         bench_paper_sparse(data);
+        bench_end();
+        bench_paper_observe(&mut data.filter);
         bench_end();
     }
 }
@@ -146,14 +183,17 @@ fn device_filter() {
         bias: SMatrix::from_fn(|i, j| 0.02 * j as f32 - 0.05 * i as f32),
         earth: -0.08,
     };
-    let (short, long) = (row(11), row(34));
-    let (filter, drive, short, long) = (black_box(&mut filter), black_box(&drive), black_box(&short), black_box(&long));
+    let (short, long, three) = (row(11), row(34), rows());
+    let (filter, drive) = (black_box(&mut filter), black_box(&drive));
+    let (short, long, three) = (black_box(&short), black_box(&long), black_box(&three));
     for _ in 0..REPETITIONS {
         bench_propagate(filter, drive);
         bench_end();
         bench_observe_11(filter, short);
         bench_end();
         bench_observe_34(filter, long);
+        bench_end();
+        bench_observe_vector(filter, three);
         bench_end();
     }
 }
@@ -165,5 +205,6 @@ fn main() -> ! {
     paper_step();
     device_filter();
     motion::whole_turn();
+    estimate::sessions();
     bench_done()
 }

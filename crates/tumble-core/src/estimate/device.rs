@@ -118,8 +118,7 @@ impl<const S: usize> Estimator<S> {
     pub fn new<const R: usize>(tape: &Tape<R, S>, conditions: Conditions) -> Self {
         let noise = Noise::from_rests(tape, conditions.stops, conditions.faces);
         let start = start::nominal(tape, conditions.gravity_mps2);
-        let mut walk = Walk::new(start, conditions.gravity_mps2);
-        walk.restart(start, prior::prior(&conditions, &start, &start));
+        let walk = Walk::new(start, conditions.gravity_mps2, prior::prior(&conditions, &start, &start));
         Self { conditions, noise, start, walk, passes: 0, bias_wanders: false, slope_certain: false }
     }
 
@@ -136,7 +135,7 @@ impl<const S: usize> Estimator<S> {
         }
         let converged = self.passes >= MIN_PASSES && !self.walk.adapting && self.largest_move() < CONVERGED;
         if converged || self.passes >= MAX_PASSES {
-            if !self.walk.filter.covariance().diagonal().iter().all(|variance| *variance >= 0.0) {
+            if !self.walk.filter.covariance().diagonal().all(|variance| variance >= 0.0) {
                 return Err(Breakdown("covariance"));
             }
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
@@ -147,7 +146,7 @@ impl<const S: usize> Estimator<S> {
             prior::narrow(&mut prior, &self.walk.filter);
         }
         let plated = self.walk.facets.agree_or_not();
-        self.walk.restart(nominal, prior);
+        self.walk.restart(nominal, &prior);
         self.walk.plated = plated;
         self.walk.coarse = self.passes < 2;
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))

@@ -3,12 +3,12 @@
 //! Everything is `f32`. It suffices because the covariance is kept symmetric to the bit (an observation subtracts `w wᵀ`)
 //! and because no prior is wider than needed: an update's rounding error is 6e-8 of the variance before it.
 
-use nalgebra::{SMatrix, SVector, Vector3};
+use core::array::from_fn;
 
-use super::state::{Block, Row, STATES};
+use nalgebra::{SMatrix, Vector3};
 
-/// Covariance of the whole state.
-pub type Covariance = SMatrix<f32, STATES, STATES>;
+pub use super::covariance::{Column, Covariance};
+use super::state::{Block, Row, Rows};
 
 /// What an observation said that was not expected.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Innovation {
 /// Mean and covariance of the error state.
 #[derive(Clone, Debug)]
 pub struct Filter {
-    state: SVector<f32, STATES>,
+    state: Column,
     covariance: Covariance,
 }
 
@@ -59,24 +59,39 @@ impl AttitudeDrive {
     }
 
     /// Adds `weight` times the row of one attitude component.
-    pub fn add_to(&self, row: Row, axis: usize, weight: f32) -> Row {
-        let mut row = row.with(Block::Earth, axis, self.earth * weight);
-        for index in 0..9 {
-            row = row.with(Block::GyroCorrection, index, self.correction[(axis, index)] * weight);
+    pub fn add_to(&self, row: &mut Row, axis: usize, weight: f32) {
+        row.set(Block::Earth, axis, [self.earth * weight]);
+        for offset in 0..9 {
+            row.set(Block::GyroCorrection, offset, [self.correction[(axis, offset)] * weight]);
         }
-        row.with_vector(Block::GyroBias, 0, &(self.bias.row(axis).transpose() * weight))
+        for offset in 0..3 {
+            row.set(Block::GyroBias, offset, [self.bias[(axis, offset)] * weight]);
+        }
+    }
+
+    /// G as a whole.
+    fn rows(&self) -> Rows<3> {
+        let mut rows = Rows::new();
+        rows.set_matrix(Block::GyroCorrection, &self.correction);
+        rows.set_matrix(Block::GyroBias, &self.bias);
+        for axis in 0..3 {
+            let mut column = [0.0; 3];
+            column[axis] = self.earth;
+            rows.set(Block::Earth, axis, column);
+        }
+        rows
     }
 }
 
 impl Default for Filter {
     fn default() -> Self {
-        Self { state: SVector::zeros(), covariance: Covariance::zeros() }
+        Self { state: Column::ZERO, covariance: Covariance::default() }
     }
 }
 
 impl Filter {
     /// The mean.
-    pub fn state(&self) -> &SVector<f32, STATES> {
+    pub fn state(&self) -> &Column {
         &self.state
     }
 
@@ -87,7 +102,7 @@ impl Filter {
 
     /// Three states of a block.
     pub fn vector(&self, block: Block, offset: usize) -> Vector3<f32> {
-        self.state.fixed_rows::<3>(block.start() + offset).into_owned()
+        Vector3::from_fn(|axis, _| self.state[block.start() + offset + axis])
     }
 
     /// Adds to three states: the nominal they are errors of has moved the other way.
@@ -100,16 +115,15 @@ impl Filter {
     /// Forgets a state and starts it anew: what it was correlated with keeps what it learnt.
     pub fn reset(&mut self, block: Block, offset: usize, mean: f32, sigma: f32) {
         let index = block.start() + offset;
-        self.covariance.row_mut(index).fill(0.0);
-        self.covariance.column_mut(index).fill(0.0);
-        self.covariance[(index, index)] = sigma * sigma;
+        self.covariance.set(index, &Column::ZERO);
+        self.covariance.widen(index, sigma * sigma);
         self.state[index] = mean;
     }
 
     /// Adds variance to a state: a random walk's step.
     pub fn diffuse(&mut self, block: Block, variance: f32) {
         for index in block.range() {
-            self.covariance[(index, index)] += variance;
+            self.covariance.widen(index, variance);
         }
     }
 
@@ -118,107 +132,95 @@ impl Filter {
     pub fn copy_to(&mut self, block: Block, offset: usize, row: &Row, mean: f32, variance: f32) {
         let index = block.start() + offset;
         self.reset(block, offset, 0.0, 0.0);
-        let copied = self.covariance_times(row);
-        let (mut mean, mut own) = (mean, variance);
-        for (from, value) in row.entries() {
-            mean += value * self.state[from];
-            own += value * copied[from];
-        }
-        self.covariance.set_column(index, &copied);
-        self.covariance.set_row(index, &copied.transpose());
-        self.covariance[(index, index)] = own;
-        self.state[index] = mean;
+        let [mut copied] = self.covariance.times(row);
+        copied[index] = variance + copied.dot(row, 0);
+        self.state[index] = mean + self.state.dot(row, 0);
+        self.covariance.set(index, &copied);
     }
 
     /// One step of motion: `φ ← φ + G·(δM, δb, Ω)`, plus `variance` on each component of φ.
     pub fn propagate(&mut self, drive: &AttitudeDrive, variance: f32) {
-        const CORRECTION: usize = Block::GyroCorrection.start();
-        const BIAS: usize = Block::GyroBias.start();
-        const EARTH: usize = Block::Earth.start();
-        let p = &mut self.covariance;
-        // The rows of φ against all states, by symmetry read from columns, which lie contiguous.
-        let rows = drive.correction * p.fixed_rows::<9>(CORRECTION)
-            + drive.bias * p.fixed_rows::<3>(BIAS)
-            + p.fixed_rows::<3>(EARTH) * drive.earth;
-        let mut attitude = p.fixed_rows_mut::<3>(Block::Attitude.start());
-        attitude += rows;
-        // What φ has taken up shows in its own 3×3 as well, now through the columns.
-        let own = p.fixed_view::<3, 9>(0, CORRECTION) * drive.correction.transpose()
-            + p.fixed_view::<3, 3>(0, BIAS) * drive.bias.transpose()
-            + p.fixed_view::<3, 3>(0, EARTH) * drive.earth;
-        for row in 0..3 {
-            for column in 0..3 {
-                p[(row, column)] += own[(row, column)];
+        let rows = drive.rows();
+        // What φ takes up of the others …
+        let added = self.covariance.times(&rows);
+        // … and of itself: G P Gᵀ.
+        let own: [[f32; 3]; 3] = from_fn(|i| from_fn(|j| added[i].dot(&rows, j)));
+        let steps: [f32; 3] = from_fn(|axis| self.state.dot(&rows, axis));
+        for axis in 0..3 {
+            let mut column = *self.covariance.column(axis);
+            column.add(&added[axis], 1.0);
+            for other in 0..axis {
+                // This row of φ's own 3×3 was completed with the column of the same number.
+                column[other] = self.covariance[(axis, other)];
             }
-        }
-        for row in 0..3 {
-            for column in 0..row {
-                let mean = 0.5 * (p[(row, column)] + p[(column, row)]);
-                p[(row, column)] = mean;
-                p[(column, row)] = mean;
+            for other in axis..3 {
+                column[other] += added[other][axis] + 0.5 * (own[axis][other] + own[other][axis]);
             }
-            p[(row, row)] += variance;
-            for column in 3..STATES {
-                p[(column, row)] = p[(row, column)];
-            }
-        }
-        let step = drive.correction * self.state.fixed_rows::<9>(CORRECTION)
-            + drive.bias * self.state.fixed_rows::<3>(BIAS)
-            + self.state.fixed_rows::<3>(EARTH) * drive.earth;
-        for row in 0..3 {
-            self.state[row] += step[row];
+            column[axis] += variance;
+            self.covariance.set(axis, &column);
+            self.state[axis] += steps[axis];
         }
     }
 
     /// Takes in `observed = row · state + noise`.
     pub fn observe(&mut self, row: &Row, observed: f32, variance: f32) -> Innovation {
-        let mut column = self.covariance_times(row);
-        let mut innovation = Innovation { value: observed, variance };
-        for (index, value) in row.entries() {
-            innovation.value -= value * self.state[index];
-            innovation.variance += value * column[index];
-        }
-        // Rounding may take a spent variance below nothing; what the reading itself brings always remains.
-        innovation.variance = innovation.variance.max(variance);
-        let step = innovation.value / innovation.variance;
-        let root = 1.0 / libm::sqrtf(innovation.variance);
-        let column = column.as_mut_slice();
-        for (state, gain) in self.state.as_mut_slice().iter_mut().zip(&*column) {
-            *state += gain * step;
-        }
-        column.iter_mut().for_each(|element| *element *= root);
-        // Slices, because a matrix's own iterators and indices cost four times as much: this loop is most of the work.
-        for (own, scale) in self.covariance.as_mut_slice().chunks_exact_mut(STATES).zip(&*column) {
-            for (element, value) in own.iter_mut().zip(&*column) {
-                *element -= value * scale;
-            }
-        }
+        let [innovation] = self.observe_each(row, [observed], variance);
         innovation
     }
 
-    fn covariance_times(&self, row: &Row) -> SVector<f32, STATES> {
-        let mut product = SVector::<f32, STATES>::zeros();
-        let sums = product.as_mut_slice();
-        let covariance = self.covariance.as_slice();
-        for (index, coefficient) in row.entries() {
-            for (sum, value) in sums.iter_mut().zip(&covariance[index * STATES..(index + 1) * STATES]) {
-                *sum += value * coefficient;
+    /// Takes in a vector, `observed = rows · state + noise`, each component with noise of this variance: what [`Self::observe`] would
+    /// make of one component after the other.
+    pub fn observe_vector(&mut self, rows: &Rows<3>, observed: &Vector3<f32>, variance: f32) -> [Innovation; 3] {
+        self.observe_each(rows, (*observed).into(), variance)
+    }
+
+    /// One component after the other, but for P, which is read once and written once: `C = P Hᵀ`, and from each column of C is taken
+    /// what the components before it would have taken from P, `c − w (w · h)`.
+    fn observe_each<const N: usize>(&mut self, rows: &Rows<N>, observed: [f32; N], variance: f32) -> [Innovation; N] {
+        let mut columns = self.covariance.times(rows);
+        let mut innovations = [Innovation { value: 0.0, variance }; N];
+        for (n, innovation) in innovations.iter_mut().enumerate() {
+            let mut column = columns[n];
+            for before in &columns[..n] {
+                column.add(before, -before.dot(rows, n));
             }
+            // Rounding may take a spent variance below nothing; what the reading itself brings always remains.
+            innovation.variance = (variance + column.dot(rows, n)).max(variance);
+            innovation.value = observed[n] - self.state.dot(rows, n);
+            self.state.add(&column, innovation.value / innovation.variance);
+            columns[n] = column.scaled(1.0 / libm::sqrtf(innovation.variance));
         }
-        product
+        self.covariance.subtract(&columns);
+        innovations
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::SVector;
+
     use super::*;
+    use crate::estimate::state::STATES;
+
+    type Dense = SMatrix<f32, STATES, STATES>;
+    type Vector = SVector<f32, STATES>;
 
     fn filter() -> Filter {
         let mut filter = Filter::default();
         for index in 0..STATES {
-            filter.covariance[(index, index)] = 1.0 + index as f32 * 0.01;
+            filter.covariance.widen(index, 1.0 + index as f32 * 0.01);
         }
         filter
+    }
+
+    fn dense(filter: &Filter) -> (Vector, Dense) {
+        (Vector::from_fn(|i, _| filter.state[i]), Dense::from_fn(|i, j| filter.covariance[(i, j)]))
+    }
+
+    fn vector(row: &Row) -> Vector {
+        let mut h = Vector::zeros();
+        row.entries().iter().for_each(|(index, [value])| h[usize::from(*index)] = *value);
+        h
     }
 
     fn drive() -> AttitudeDrive {
@@ -229,52 +231,88 @@ mod tests {
         }
     }
 
+    /// Everything correlated with everything.
+    fn tangled() -> Filter {
+        let mut filter = filter();
+        filter.observe(&Row::new().with(Block::Attitude, 1, 0.7).with(Block::GyroBias, 2, -0.3), 0.5, 0.1);
+        filter.observe(&Row::new().with(Block::Earth, 0, 1.0).with(Block::GyroCorrection, 4, 0.9), -0.2, 0.2);
+        let all = (0..34).fold(Row::new(), |row, k| row.with(Block::Attitude, k * 5 / 4, 0.4 - 0.03 * k as f32));
+        filter.observe(&all, 0.3, 0.1);
+        filter
+    }
+
+    fn assert_same(filter: &Filter, mean: &Vector, covariance: &Dense) {
+        let (state, own) = dense(filter);
+        assert!((own - covariance).amax() < 2e-6, "{}", (own - covariance).amax());
+        assert!((state - mean).amax() < 1e-6, "{}", (state - mean).amax());
+        assert_eq!(own, own.transpose());
+    }
+
     #[test]
     fn the_sparse_transition_equals_the_dense_one() {
-        let mut sparse = filter();
-        sparse.observe(&Row::new().with(Block::Attitude, 1, 0.7).with(Block::GyroBias, 2, -0.3), 0.5, 0.1);
-        sparse.observe(&Row::new().with(Block::Earth, 0, 1.0).with(Block::GyroCorrection, 4, 0.9), -0.2, 0.2);
-        let mut transition = Covariance::identity();
+        let mut sparse = tangled();
+        let (mean, covariance) = dense(&sparse);
+        let mut transition = Dense::identity();
         let drive = drive();
         transition.fixed_view_mut::<3, 9>(0, Block::GyroCorrection.start()).copy_from(&drive.correction);
         transition.fixed_view_mut::<3, 3>(0, Block::GyroBias.start()).copy_from(&drive.bias);
         for axis in 0..3 {
             transition[(axis, Block::Earth.start() + axis)] = drive.earth;
         }
-        let mut expected = transition * sparse.covariance * transition.transpose();
-        let mean = transition * sparse.state;
+        let mut expected = transition * covariance * transition.transpose();
         for axis in 0..3 {
             expected[(axis, axis)] += 0.01;
         }
         sparse.propagate(&drive, 0.01);
-        assert!((sparse.covariance - expected).amax() < 2e-6, "{}", (sparse.covariance - expected).amax());
-        assert!((sparse.state - mean).amax() < 1e-6);
-        assert_eq!(sparse.covariance, sparse.covariance.transpose());
+        assert_same(&sparse, &(transition * mean), &expected);
     }
 
     #[test]
     fn an_observation_is_the_textbook_update_and_keeps_symmetry() {
-        let mut filter = filter();
+        let mut filter = tangled();
         filter.propagate(&drive(), 0.0);
         let row = Row::new().with(Block::Attitude, 0, 1.0).with(Block::AccelBias, 1, 2.0);
-        let mut h = SVector::<f32, STATES>::zeros();
-        row.entries().for_each(|(index, value)| h[index] = value);
-        let s = (h.transpose() * filter.covariance * h).x + 0.5;
-        let gain = filter.covariance * h / s;
-        let expected = filter.covariance - gain * h.transpose() * filter.covariance;
+        let (h, (mean, covariance)) = (vector(&row), dense(&filter));
+        let s = (h.transpose() * covariance * h).x + 0.5;
+        let gain = covariance * h / s;
+        let value = 0.3 - h.dot(&mean);
         let innovation = filter.observe(&row, 0.3, 0.5);
         assert!((innovation.variance - s).abs() < 1e-5);
-        assert!((filter.covariance - expected).amax() < 2e-6);
-        assert_eq!(filter.covariance, filter.covariance.transpose());
-        assert!((filter.state - gain * 0.3).amax() < 1e-6);
+        assert!((innovation.value - value).abs() < 1e-6);
+        assert_same(&filter, &(mean + gain * value), &(covariance - gain * h.transpose() * covariance));
+    }
+
+    #[test]
+    fn a_vector_is_its_components_one_after_the_other() {
+        let mut together = tangled();
+        together.propagate(&drive(), 0.0);
+        let mut apart = together.clone();
+        let observed = Vector3::new(0.2, -0.1, -0.4);
+        let mut rows = drive().rows();
+        rows.set(Block::Attitude, 0, [9.8, 0.0, 0.3]);
+        rows.set(Block::Wobble, 1, [0.5, -2.0, 0.7]);
+        let innovations = together.observe_vector(&rows, &observed, 0.05);
+        for (axis, found) in innovations.into_iter().enumerate() {
+            let mut row = Row::new();
+            for (index, column) in rows.entries() {
+                row.set(Block::Attitude, usize::from(*index), [column[axis]]);
+            }
+            let expected = apart.observe(&row, observed[axis], 0.05);
+            assert!((found.value - expected.value).abs() < 1e-5, "{found:?} {expected:?}");
+            assert!((found.variance / expected.variance - 1.0).abs() < 1e-5, "{found:?} {expected:?}");
+        }
+        let (mean, covariance) = dense(&apart);
+        assert_same(&together, &mean, &covariance);
     }
 
     #[test]
     fn a_clone_is_fully_correlated_but_for_its_noise() {
-        let mut filter = filter();
+        let mut filter = tangled();
         filter.copy_to(Block::Fence, 0, &Row::new().with(Block::Attitude, 2, 1.0), 0.0, 0.25);
         let fence = Block::Fence.start();
         assert!((filter.covariance[(fence, 2)] - filter.covariance[(2, 2)]).abs() < 1e-6);
         assert!((filter.covariance[(fence, fence)] - filter.covariance[(2, 2)] - 0.25).abs() < 1e-6);
+        let (_, own) = dense(&filter);
+        assert_eq!(own, own.transpose());
     }
 }

@@ -58,10 +58,8 @@ impl Group {
         let mut mean = GravityParts::default();
         mean.add(&self.gravity, share);
         let since = self.mean_since();
-        core::array::from_fn(|axis| {
-            let observation = mean.observation(axis, gravity_mps2, Some(&since));
-            filter.observe(&observation.row, observation.residual, variance)
-        })
+        let observation = mean.observation(gravity_mps2, Some(&since));
+        filter.observe_vector(&observation.rows, &observation.residual, variance)
     }
 }
 

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 
 use super::filter::AttitudeDrive;
-use super::state::{Block, Row};
+use super::state::{Block, Row, Rows};
 use crate::calibration::Triad;
 use crate::tape::Record;
 
@@ -24,6 +24,14 @@ pub struct Observation {
     pub residual: f32,
     /// Coefficients.
     pub row: Row,
+}
+
+/// Three residuals and the rows that explain them.
+pub struct VectorObservation {
+    /// Observed minus nominal.
+    pub residual: Vector3<f32>,
+    /// Coefficients.
+    pub rows: Rows<3>,
 }
 
 impl Nominal {
@@ -62,18 +70,12 @@ impl Nominal {
         GravityParts { residual: bias * raw - Vector3::new(0.0, 0.0, gravity), correction, bias, lever: to_n * lever }
     }
 
-    /// Rate at rest, one component in frame b: `M (raw − b) − Rᵀ Ω₀ = M δb + Rᵀ δΩ` (δM times a rate near zero is left
-    /// out).
-    pub fn rest_rate(&self, record: &Record, to_b: &Matrix3<f32>) -> [Observation; 3] {
-        let residual = self.rotation(record) / record.dt_s - to_b * self.earth_rad_s;
-        core::array::from_fn(|axis| Observation {
-            residual: residual[axis],
-            row: Row::new().with_vector(Block::GyroBias, 0, &self.gyro.correction.row(axis).transpose()).with_vector(
-                Block::Earth,
-                0,
-                &to_b.row(axis).transpose(),
-            ),
-        })
+    /// Rate at rest, frame b: `M (raw − b) − Rᵀ Ω₀ = M δb + Rᵀ δΩ` (δM times a rate near zero is left out).
+    pub fn rest_rate(&self, record: &Record, to_b: &Matrix3<f32>) -> VectorObservation {
+        let mut rows = Rows::new();
+        rows.set_matrix(Block::GyroBias, &self.gyro.correction);
+        rows.set_matrix(Block::Earth, to_b);
+        VectorObservation { residual: self.rotation(record) / record.dt_s - to_b * self.earth_rad_s, rows }
     }
 }
 
@@ -112,29 +114,29 @@ impl GravityParts {
         self.lever += other.lever * weight;
     }
 
-    /// One component's row. `since`: how attitude has moved on from the mean of the records to now,
+    /// As an observation. `since`: how attitude has moved on from the mean of the records to now,
     /// `φ_mean = φ − since · (δM, δb, Ω)`; none at rest.
-    pub fn observation(&self, axis: usize, gravity: f32, since: Option<&AttitudeDrive>) -> Observation {
-        let mut row = Row::new().with_vector(Block::AccelBias, 0, &self.bias.row(axis).transpose());
-        for index in 0..9 {
-            row = row.with(Block::AccelCorrection, index, self.correction[(axis, index)]);
-        }
-        let tilt = match axis {
-            0 => Some((1, -gravity)),
-            1 => Some((0, gravity)),
-            _ => None,
-        };
-        if let Some((attitude, coefficient)) = tilt {
-            row = row.with(Block::Attitude, attitude, coefficient);
-            if let Some(since) = since {
-                row = since.add_to(row, attitude, -coefficient);
+    pub fn observation(&self, gravity: f32, since: Option<&AttitudeDrive>) -> VectorObservation {
+        let mut rows = Rows::new();
+        rows.set_matrix(Block::AccelBias, &self.bias);
+        rows.set_matrix(Block::AccelCorrection, &self.correction);
+        // g ẑ × a: what an attitude error a does to the reading.
+        let tilted = |x: f32, y: f32| [-gravity * y, gravity * x, 0.0];
+        rows.set(Block::Attitude, 0, tilted(1.0, 0.0));
+        rows.set(Block::Attitude, 1, tilted(0.0, 1.0));
+        if let Some(since) = since {
+            rows.set(Block::Earth, 0, tilted(-since.earth, 0.0));
+            rows.set(Block::Earth, 1, tilted(0.0, -since.earth));
+            for (offset, column) in since.correction.column_iter().enumerate() {
+                rows.set(Block::GyroCorrection, offset, tilted(-column[0], -column[1]));
             }
+            for (offset, column) in since.bias.column_iter().enumerate() {
+                rows.set(Block::GyroBias, offset, tilted(-column[0], -column[1]));
+            }
+            rows.set_matrix(Block::Lever, &self.lever);
+            rows.set_matrix(Block::Pivot, &self.lever);
         }
-        if since.is_some() {
-            let lever = self.lever.row(axis).transpose();
-            row = row.with_vector(Block::Lever, 0, &lever).with_vector(Block::Pivot, 0, &lever);
-        }
-        Observation { residual: self.residual[axis], row }
+        VectorObservation { residual: self.residual, rows }
     }
 }
 
@@ -155,9 +157,13 @@ pub fn plate_in_turn(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2], since
     let tilt = [(1, normal_n.z, -normal_n.y), (0, -normal_n.z, normal_n.x)];
     core::array::from_fn(|axis| {
         let (attitude, coefficient, heading) = tilt[axis];
-        let row = Row::new().with(Block::Attitude, attitude, -coefficient).with(Block::Attitude, 2, -heading);
-        let row = since.add_to(row, attitude, coefficient).with(Block::Table, axis, 1.0);
-        let row = row.with(Block::Wobble, 0, -plane_n[0][axis]).with(Block::Wobble, 1, -plane_n[1][axis]);
+        let mut row = Row::new();
+        row.set(Block::Attitude, attitude, [-coefficient]);
+        row.set(Block::Attitude, 2, [-heading]);
+        since.add_to(&mut row, attitude, coefficient);
+        row.set(Block::Table, axis, [1.0]);
+        row.set(Block::Wobble, 0, [-plane_n[0][axis]]);
+        row.set(Block::Wobble, 1, [-plane_n[1][axis]]);
         Observation { residual: normal_n[axis], row }
     })
 }

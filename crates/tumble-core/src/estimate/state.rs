@@ -16,7 +16,7 @@
 //! | wobble w | 2 | rad | how far the face leaves the table in a turn, as seen from the box; anew for every turn |
 
 use heapless::Vec;
-use nalgebra::Vector3;
+use nalgebra::{SMatrix, Vector3};
 
 /// All of it.
 pub const STATES: usize = 43;
@@ -85,38 +85,56 @@ impl Block {
     }
 }
 
-/// A row of the observation matrix with its zeros left out.
+/// Rows of an observation matrix, N×`STATES`, column by column with the empty columns left out.
 #[derive(Clone, Debug, Default)]
-pub struct Row {
-    entries: Vec<(u8, f32), 36>,
+pub struct Rows<const N: usize> {
+    entries: Vec<(u8, [f32; N]), 36>,
+}
+
+/// One of them.
+pub type Row = Rows<1>;
+
+impl<const N: usize> Rows<N> {
+    /// All zero.
+    pub fn new() -> Self {
+        Self { entries: Vec::new() }
+    }
+
+    /// Sets the column of one state: `offset` counts within the block. By reference, because a `Rows` is 0.6 KB to move.
+    pub fn set(&mut self, block: Block, offset: usize, column: [f32; N]) {
+        // No observation of this model has more than 34 columns.
+        let _ = self.entries.push(((block.start() + offset) as u8, column));
+    }
+
+    /// Sets the columns of a block's first states.
+    pub fn set_matrix<const C: usize>(&mut self, block: Block, matrix: &SMatrix<f32, N, C>) {
+        for (offset, column) in matrix.data.0.iter().enumerate() {
+            self.set(block, offset, *column);
+        }
+    }
+
+    /// (index, column) of what is not empty.
+    pub fn entries(&self) -> &[(u8, [f32; N])] {
+        &self.entries
+    }
 }
 
 impl Row {
-    /// All zero.
-    pub fn new() -> Self {
-        Self::default()
-    }
-
     /// Sets one coefficient: `offset` counts within the block.
     pub fn with(mut self, block: Block, offset: usize, value: f32) -> Self {
-        // No observation of this model has more than 34 coefficients.
-        let _ = self.entries.push(((block.start() + offset) as u8, value));
+        self.set(block, offset, [value]);
         self
     }
 
     /// Sets three coefficients in a row.
-    pub fn with_vector(self, block: Block, offset: usize, value: &Vector3<f32>) -> Self {
-        self.with(block, offset, value.x).with(block, offset + 1, value.y).with(block, offset + 2, value.z)
+    pub fn with_vector(mut self, block: Block, offset: usize, value: &Vector3<f32>) -> Self {
+        (0..3).for_each(|axis| self.set(block, offset + axis, [value[axis]]));
+        self
     }
 
     /// All coefficients with the other sign.
     pub fn negated(mut self) -> Self {
-        self.entries.iter_mut().for_each(|entry| entry.1 = -entry.1);
+        self.entries.iter_mut().for_each(|entry| entry.1 = [-entry.1[0]]);
         self
-    }
-
-    /// (index, coefficient) of what is not zero.
-    pub fn entries(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
-        self.entries.iter().map(|&(index, value)| (usize::from(index), value))
     }
 }

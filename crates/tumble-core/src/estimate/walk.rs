@@ -88,10 +88,10 @@ struct Visit {
 }
 
 impl<const S: usize> Walk<S> {
-    /// Nothing walked yet.
-    pub fn new(nominal: Nominal, gravity: f32) -> Self {
+    /// Nothing walked yet; `filter` holds the prior about the nominal.
+    pub fn new(nominal: Nominal, gravity: f32, filter: Filter) -> Self {
         Self {
-            filter: Filter::default(),
+            filter,
             noise: Vec::new(),
             sums: Sums::default(),
             closures: Closures::default(),
@@ -127,10 +127,18 @@ impl<const S: usize> Walk<S> {
         &self.nominal
     }
 
-    /// Starts the next pass about new parameters; `filter` holds the prior about them.
-    pub fn restart(&mut self, nominal: Nominal, filter: Filter) {
-        let noise = core::mem::take(&mut self.noise);
-        *self = Self { filter, noise, adapting: self.adapting, ..Self::new(nominal, self.gravity) };
+    /// Starts the next pass about new parameters; `filter` holds the prior about them. What is known of each segment's noise stays,
+    /// and whether it is still learnt. In place: a new `Walk` on the stack would take 11 KB, twice where moves are not elided.
+    pub fn restart(&mut self, nominal: Nominal, prior: &Filter) {
+        self.filter.clone_from(prior);
+        (self.sums, self.closures, self.facets) = (Sums::default(), Closures::default(), Facets::default());
+        (self.drift, self.wobble) = (Drift::default(), Wobble::default());
+        (self.plated, self.coarse, self.aligned, self.table_known) = (true, true, false, false);
+        (self.nominal, self.now, self.time_s) = (nominal, nominal, 0.0);
+        (self.segment, self.record, self.chains, self.unplated) = (0, 0, 0, 0);
+        (self.attitude, self.visit, self.hinge) = (UnitQuaternion::identity(), None, None);
+        (self.group, self.turn_noise) = (Group::default(), TurnNoise::default());
+        (self.last_rest_us, self.move_s, self.level_variance) = (0, 0.0, 0.0);
     }
 
     /// Segments walked, for a progress display.

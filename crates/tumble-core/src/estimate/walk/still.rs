@@ -161,15 +161,15 @@ impl<const S: usize> Walk<S> {
         let variance = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
-        for axis in 0..3 {
-            let Observation { residual, row } = parts.observation(axis, self.gravity, None);
-            let innovation = self.filter.observe(&row, residual, variance);
-            if self.record > 0 {
+        let observation = parts.observation(self.gravity, None);
+        let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
+        if self.record > 0 {
+            for innovation in &innovations {
                 self.sums.rest.0 += innovation.nis();
                 self.sums.rest.1 += 1.0;
-            } else if axis == 2 && self.last_rest_us > 0 {
-                self.sums.force_walk.take(&innovation, since);
             }
+        } else if self.last_rest_us > 0 {
+            self.sums.force_walk.take(&innovations[2], since);
         }
         if solid {
             self.rest_rate(segment, record, &to_n.transpose(), noise);
@@ -180,11 +180,10 @@ impl<const S: usize> Walk<S> {
         let variance = noise.rate_density / record.dt_s;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
-        for Observation { residual, row } in self.now.rest_rate(record, to_b) {
-            let innovation = self.filter.observe(&row, residual, variance);
-            if first && self.last_rest_us > 0 {
-                self.sums.rate_walk.take(&innovation, since);
-            }
+        let observation = self.now.rest_rate(record, to_b);
+        let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
+        if first && self.last_rest_us > 0 {
+            innovations.iter().for_each(|innovation| self.sums.rate_walk.take(innovation, since));
         }
         self.last_rest_us = segment.end_us;
     }
