@@ -75,6 +75,8 @@ pub struct Walk<const S: usize> {
     hinge: Option<usize>,
     move_s: f32,
     level_variance: f32,
+    /// The widest prior sigma of a correction or, over gravity, of the accelerometer's bias, 1.
+    width: f32,
 }
 
 /// A stay on one face.
@@ -119,6 +121,7 @@ impl<const S: usize> Walk<S> {
             hinge: None,
             move_s: 0.0,
             level_variance: 0.0,
+            width: 0.0,
         }
     }
 
@@ -130,7 +133,15 @@ impl<const S: usize> Walk<S> {
     /// Starts the next pass about new parameters; `filter` holds the prior about them.
     pub fn restart(&mut self, nominal: Nominal, filter: Filter) {
         let noise = core::mem::take(&mut self.noise);
-        *self = Self { filter, noise, adapting: self.adapting, ..Self::new(nominal, self.gravity) };
+        let widest = |block: Block| block.range().fold(0.0f32, |widest, i| widest.max(filter.covariance()[(i, i)]));
+        let corrections = widest(Block::GyroCorrection).max(widest(Block::AccelCorrection));
+        let width = libm::sqrtf(corrections.max(widest(Block::AccelBias) / (self.gravity * self.gravity)));
+        *self = Self { filter, noise, adapting: self.adapting, width, ..Self::new(nominal, self.gravity) };
+    }
+
+    /// The widest prior sigma of this pass, 1.
+    pub fn width(&self) -> f32 {
+        self.width
     }
 
     /// Segments walked, for a progress display.
