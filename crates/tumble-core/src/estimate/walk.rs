@@ -222,16 +222,20 @@ impl<const S: usize> Walk<S> {
         }
         self.move_s += record.dt_s;
         let on_table = matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None;
-        let lever = on_table.then(|| self.lever(tape, index, record));
-        self.turn(record, lever.as_ref());
+        let slope = slope(tape, index, record);
+        let lever = on_table.then(|| {
+            let turn = self.now.rotation(record) / record.dt_s;
+            model::lever(&turn, &(self.now.gyro.correction * slope))
+        });
+        self.turn(record, &slope, lever.as_ref());
         if on_table && self.group.records == GROUP {
             self.close_group(segment, noise);
         }
     }
 
     /// Carries the nominal attitude over a record and adds the record to the group.
-    fn turn(&mut self, record: &Record, lever: Option<&Matrix3<f32>>) {
-        let rotation = self.now.rotation(record);
+    fn turn(&mut self, record: &Record, slope: &Vector3<f32>, lever: Option<&Matrix3<f32>>) {
+        let rotation = self.now.rotation(record) + self.now.coning(record, slope);
         let middle = self.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
         let gravity = lever.map(|lever| self.now.gravity(record, &to_n, self.gravity, lever));
@@ -240,14 +244,6 @@ impl<const S: usize> Walk<S> {
         let earth = UnitQuaternion::from_scaled_axis(self.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.attitude = UnitQuaternion::new_normalize(next.into_inner());
-    }
-
-    fn lever<const R: usize>(&self, tape: &Tape<R, S>, index: usize, record: &Record) -> Matrix3<f32> {
-        let rate = |record: &Record| self.now.rotation(record) / record.dt_s;
-        let before = index.checked_sub(1).and_then(|index| tape.record(index)).unwrap_or(*record);
-        let after = tape.record(index + 1).unwrap_or(*record);
-        let span = 0.5 * (before.dt_s + after.dt_s) + record.dt_s;
-        model::lever(&rate(record), &((rate(&after) - rate(&before)) / span))
     }
 
     fn close_group(&mut self, segment: &Segment, noise: &Noise) {
@@ -342,4 +338,13 @@ impl<const S: usize> Walk<S> {
             }
         }
     }
+}
+
+/// Slope of the raw rate over a record and its neighbours, rad/s².
+fn slope<const R: usize, const S: usize>(tape: &Tape<R, S>, index: usize, record: &Record) -> Vector3<f32> {
+    let rate = |record: &Record| record.rotation_rad / record.dt_s;
+    let before = index.checked_sub(1).and_then(|index| tape.record(index)).unwrap_or(*record);
+    let after = tape.record(index + 1).unwrap_or(*record);
+    let span = 0.5 * (before.dt_s + after.dt_s) + record.dt_s;
+    (rate(&after) - rate(&before)) / span
 }

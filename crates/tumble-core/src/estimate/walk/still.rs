@@ -159,7 +159,7 @@ impl<const S: usize> Walk<S> {
     pub(super) fn rest(&mut self, segment: &Segment, record: &Record, noise: &Noise) {
         let solid = noise::is_solid(segment, noise.quiet_variance);
         if !solid {
-            self.turn(record, None);
+            self.turn(record, &Vector3::zeros(), None);
             core::mem::take(&mut self.group).propagate(&mut self.filter, noise.rate_density);
         }
         let to_n = self.attitude.to_rotation_matrix().into_inner();
