@@ -9,11 +9,11 @@ use super::closures::Closures;
 use super::drift::Drift;
 use super::facets::{Facets, SQUARE};
 use super::filter::{Filter, Innovation};
-use super::group::{Group, TurnNoise};
+use super::group::Group;
 use super::model::{self, Nominal, Observation};
 use super::noise::Noise;
 use super::state::Block;
-use super::sums::{SegmentNoise, Sums};
+use super::sums::{Excess, SegmentNoise, Sums};
 use super::wobble::Wobble;
 use crate::face::Face;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
@@ -67,7 +67,8 @@ pub struct Walk<const S: usize> {
     chains: u16,
     visit: Option<Visit>,
     group: Group,
-    turn_noise: TurnNoise,
+    /// How much noisier its readings are than they are taken to be.
+    turn_noise: Excess,
     /// Groups of this turn since the plate was last looked at.
     unplated: u16,
     last_rest_us: u64,
@@ -115,7 +116,7 @@ impl<const S: usize> Walk<S> {
             chains: 0,
             visit: None,
             group: Group::default(),
-            turn_noise: TurnNoise::default(),
+            turn_noise: Excess::default(),
             unplated: 0,
             last_rest_us: 0,
             hinge: None,
@@ -180,7 +181,7 @@ impl<const S: usize> Walk<S> {
         let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
         self.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
         self.group = Group::default();
-        self.turn_noise = TurnNoise::default();
+        self.turn_noise = Excess::default();
         self.unplated = 0;
         if segment.is_usable_still() {
             self.enter_still(tape, segment, noise);
@@ -256,7 +257,7 @@ impl<const S: usize> Walk<S> {
         if matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None {
             let variance = noise.force_density / group.seconds * own.force_scale;
             let innovations = group.observe(&mut self.filter, self.gravity, variance);
-            self.turn_noise.take(&innovations, variance);
+            innovations.iter().for_each(|innovation| self.turn_noise.take(innovation, variance));
             self.plate_in_turn(segment, &group, noise);
         }
     }
@@ -314,9 +315,9 @@ impl<const S: usize> Walk<S> {
         {
             self.learn_pivot(noise);
             self.learn_wobble(noise);
-            if let Some(factor) = self.turn_noise.factor().filter(|_| self.adapting) {
+            if let Some((excess, _)) = self.turn_noise.value().filter(|_| self.adapting) {
                 let scale = &mut self.noise[self.segment].force_scale;
-                *scale = (*scale * factor).clamp(1.0, 1e6);
+                *scale = (*scale * (1.0 + excess)).clamp(1.0, 1e6);
             }
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;

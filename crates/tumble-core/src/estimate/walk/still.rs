@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::{Visit, Walk};
 use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
-use crate::estimate::noise::{self, Noise};
+use crate::estimate::noise::{self, Noise, ROUNDED};
 use crate::estimate::state::Block;
 use crate::face::Face;
 use crate::motion::path::WHOLE_TURN;
-use crate::tape::{Record, Segment, Tape};
+use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Record, Segment, Tape};
 
 /// How well a face's contact with the table repeats, rad: 0.25 µm over 5 cm, below all that shows.
 const CONTACT_SIGMA: f32 = 5e-6;
@@ -163,7 +163,8 @@ impl<const S: usize> Walk<S> {
             core::mem::take(&mut self.group).propagate(&mut self.filter, noise.rate_density);
         }
         let to_n = self.attitude.to_rotation_matrix().into_inner();
-        let variance = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let own = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let variance = own + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         for axis in 0..3 {
@@ -182,7 +183,8 @@ impl<const S: usize> Walk<S> {
     }
 
     fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
-        let variance = noise.rate_density / record.dt_s;
+        let rounded = ANGLE_UNIT_RAD / record.dt_s;
+        let variance = noise.rate_density / record.dt_s + ROUNDED * rounded * rounded;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         for Observation { residual, row } in self.now.rest_rate(record, to_b) {
