@@ -22,7 +22,7 @@ const TIME_UNIT_US: f32 = 10.0;
 pub struct Record {
     /// Length, s.
     pub dt_s: f32,
-    /// Rotation vector by the raw gyroscope (coning included), rad, sensor axes.
+    /// Rotation vector by the raw gyroscope, rad, sensor axes; coning included, of rates less the resting rate.
     pub rotation_rad: Vector3<f32>,
     /// Mean raw specific force, m/s², sensor axes.
     pub specific_force_mps2: Vector3<f32>,

@@ -32,12 +32,12 @@ impl Nominal {
         self.gyro.correction * (record.rotation_rad - self.gyro.bias * record.dt_s)
     }
 
-    /// What is wrong with the coning in a record's rotation vector, rad, frame b. It was summed in raw rates, `½ ∫ θ × ω`; of a
-    /// rate with the slope ω̇ that is `ω × ω̇ T³/12`, and bias and correction belong inside the product. A move by hand has some
-    /// 0.2 mrad of it in a record, and a bias of 5 °/s adds 40 µrad: sheet noise hides that, a sensor five times as quiet does not.
+    /// What is wrong with the coning in a record's rotation vector, rad, frame b. It was summed in uncorrected rates, `½ ∫ θ × ω`; of a
+    /// rate with the slope ω̇ that is `ω × ω̇ T³/12`, and the correction belongs inside the product. A move by hand has some
+    /// 0.2 mrad of it in a record, of which 5 % are 10 µrad: sheet noise hides that, a sensor five times as quiet does not.
     pub fn coning(&self, record: &Record, slope: &Vector3<f32>) -> Vector3<f32> {
-        let raw = record.rotation_rad / record.dt_s;
-        let ideal = self.gyro.compensate(&raw).cross(&(self.gyro.correction * slope));
+        let raw = record.rotation_rad / record.dt_s - self.gyro.bias;
+        let ideal = (self.gyro.correction * raw).cross(&(self.gyro.correction * slope));
         (ideal - self.gyro.correction * raw.cross(slope)) * (record.dt_s * record.dt_s * record.dt_s / 12.0)
     }
 
