@@ -85,7 +85,11 @@ impl Closures {
             let (k, variance) = scales[axis];
             let information = 1.0 / variance - self.current.information[axis];
             // A difference of two sums: below a hundredth of them it is `f32`'s rounding.
-            if information > 0.01 / variance { (information, k / variance - self.current.product[axis]) } else { (0.0, 0.0) }
+            if information > 0.01 / variance {
+                (information, k / variance - self.current.product[axis])
+            } else {
+                (0.0, 0.0)
+            }
         });
         let first = range.start;
         self.any.then(|| {

@@ -122,7 +122,16 @@ impl<const S: usize> Estimator<S> {
         let start = start::nominal(tape, conditions.gravity_mps2);
         let mut walk = Walk::new(start, conditions.gravity_mps2);
         walk.restart(start, prior::prior(&conditions, &start, &start));
-        Self { conditions, noise, start, walk, passes: 0, wobble_steps: [1.0; 2], bias_wanders: false, slope_certain: false }
+        Self {
+            conditions,
+            noise,
+            start,
+            walk,
+            passes: 0,
+            wobble_steps: [1.0; 2],
+            bias_wanders: false,
+            slope_certain: false,
+        }
     }
 
     /// Walks up to `records` further.

@@ -21,7 +21,7 @@ pub const ROUNDED: f32 = 1.0 / 6.0;
 /// The same of a difference of neighbours, `−r₁ + 2 r₂ − r₃`: what the rests' scatter has of it.
 const ROUNDED_DIFFERENCE: f32 = 0.5;
 /// Length of a record at rest, and of the shortest sum whose rounding matters, s.
-const REST_RECORD_S: f32 = 0.5;
+pub const REST_RECORD_S: f32 = 0.5;
 const SHORTEST_S: f32 = 2.0;
 /// A person who stops by eye (sim, `design.md` §2), before its closures are seen.
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
@@ -89,8 +89,9 @@ impl Noise {
             }
         }
         // The scatter's share of rounding out, that of a sum in: sheet noise over 14 and over 30, which is the least there is.
-        let rounding =
-            |unit: f32| [0.5 * ROUNDED_DIFFERENCE / REST_RECORD_S, ROUNDED / SHORTEST_S].map(|share| share * unit * unit);
+        let rounding = |unit: f32| {
+            [0.5 * ROUNDED_DIFFERENCE / REST_RECORD_S, ROUNDED / SHORTEST_S].map(|share| share * unit * unit)
+        };
         let bounded = |found: Option<f32>, sheet: f32, unit: f32| {
             let ([scatter, sum], sheet) = (rounding(unit), sheet * sheet);
             found.map_or(sheet, |found| (found - scatter).max(0.0) + sum).min(1e4 * sheet)

@@ -19,14 +19,14 @@ use crate::face::Face;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
 
 /// Records of a turn that make one step of the filter: half a second.
-const GROUP: u16 = 6;
+pub const GROUP: u16 = 6;
 /// Groups from one look at the plate to the next, 1.5 s: gyroscope and gravity together forget an attitude error in 1.7 s, so that
 /// more looks would tell little more.
-const PLATED: u16 = 3;
+pub const PLATED: u16 = 3;
 /// What a hand's tremor leaves in a group's mean normal, rad: 0.005° at 8–12 Hz, seen twelve times a second.
-const WHITE: f32 = 30e-6;
+pub const WHITE: f32 = 30e-6;
 /// A wobble fades in and out and has overtones: this share of the variance of what turns with the box does not.
-const UNSTEADY: f32 = 0.25;
+pub const UNSTEADY: f32 = 0.25;
 /// How much noisier than rest a turn is taken for before its innovations are seen.
 const TURN_FORCE_SCALE: f32 = 25.0;
 
