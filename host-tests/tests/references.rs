@@ -79,20 +79,22 @@ impl Solutions {
     }
 }
 
-/// The plate in turns is in the square ones.
+/// The plate in turns is in the square ones. Equal sigmas say that both saw the same with the same weights; that two minima of it lie
+/// a sixth of a sigma apart is what was measured at most over these and seed 2 (docs/method.md, §5).
 #[test]
 fn the_device_is_the_batch_solution_link_by_link() {
     let sessions =
         [(Scheme::Single, BoxFaces::Square), (Scheme::Double, BoxFaces::Square), (Scheme::Double, BoxFaces::Unknown)];
     for (scheme, faces) in sessions {
-        for seed in [1, 2] {
-            let solutions = solve(scheme, seed, faces);
-            let [arithmetic, mean_noise, records] = solutions.chain();
-            println!("{} {seed} {faces:?}: chi² {:.3}", scheme.name(), solutions.samples.chi_square_per_dof);
-            println!("  f32 passes, records: {arithmetic:.2?}");
-            println!("  lumped noise:        {mean_noise:.2?}");
-            println!("  records for samples: {records:.2?}");
-        }
+        let solutions = solve(scheme, 1, faces);
+        let [arithmetic, mean_noise, records] = solutions.chain();
+        println!("{} {faces:?}: chi² {:.3}", scheme.name(), solutions.samples.chi_square_per_dof);
+        println!("  f32 passes, records: {arithmetic:.3?}");
+        println!("  lumped noise:        {mean_noise:.3?}");
+        println!("  records for samples: {records:.3?}");
+        assert!(arithmetic.sigmas < 0.25 && arithmetic.sigma_ratio < 0.01, "{arithmetic:?}");
+        assert!(mean_noise.sigmas < 0.15 && mean_noise.sigma_ratio < 0.03, "{mean_noise:?}");
+        assert!(records.sigmas < 0.8 && records.sigma_ratio < 0.01, "{records:?}");
     }
 }
 
