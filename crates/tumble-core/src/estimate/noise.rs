@@ -88,17 +88,9 @@ impl Noise {
                 let _ = force.push((scatter.force, scatter.count));
             }
         }
-        // The scatter's share of rounding out, that of a sum in: sheet noise over 14 and over 30, which is the least there is.
-        let rounding = |unit: f32| {
-            [0.5 * ROUNDED_DIFFERENCE / REST_RECORD_S, ROUNDED / SHORTEST_S].map(|share| share * unit * unit)
-        };
-        let bounded = |found: Option<f32>, sheet: f32, unit: f32| {
-            let ([scatter, sum], sheet) = (rounding(unit), sheet * sheet);
-            found.map_or(sheet, |found| (found - scatter).max(0.0) + sum).min(1e4 * sheet)
-        };
         Self {
-            rate_density: bounded(pooled(&mut rate), SHEET_RATE_DENSITY, ANGLE_UNIT_RAD),
-            force_density: bounded(pooled(&mut force), SHEET_FORCE_DENSITY, FORCE_UNIT_MPS2 * REST_RECORD_S),
+            rate_density: density(pooled(&mut rate), SHEET_RATE_DENSITY, ANGLE_UNIT_RAD),
+            force_density: density(pooled(&mut force), SHEET_FORCE_DENSITY, FORCE_UNIT_MPS2 * REST_RECORD_S),
             bias_walk: WALK_FLOOR,
             bias_slope: Vector3::zeros(),
             slope_walk: 0.0,
@@ -187,6 +179,15 @@ impl Noise {
     pub fn total_bias_walk(&self) -> f32 {
         self.bias_walk + self.slope_walk
     }
+}
+
+/// From the rests' scatter. Its share of rounding goes out and that of a sum comes in, which is the least there is: the sheet's sigma
+/// over 14 for the gyroscope, over 30 for the accelerometer.
+fn density(found: Option<f32>, sheet: f32, unit: f32) -> f32 {
+    let scatter = 0.5 * ROUNDED_DIFFERENCE / REST_RECORD_S * unit * unit;
+    let sum = ROUNDED / SHORTEST_S * unit * unit;
+    let sheet = sheet * sheet;
+    found.map_or(sheet, |found| (found - scatter).max(0.0) + sum).min(1e4 * sheet)
 }
 
 /// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which

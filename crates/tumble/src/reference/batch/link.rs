@@ -163,10 +163,9 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
                 let turn = turned(&a, &b, dt_s);
                 let earth = UnitQuaternion::from_scaled_axis(earth * -dt_s);
                 if let Some(lever) = &lever {
-                    let (rate, slope) = (gyro * (interval.smooth_rate - bias), gyro * interval.slope);
-                    let swung = rate.cross(&rate.cross(lever)) + slope.cross(lever);
                     let middle = rotation * turn.powf(0.5);
                     face += leg.plated.map_or_else(Vector3::zeros, |plate| middle * plate.normal()) * dt_s;
+                    let swung = swung(lever, &(gyro * (interval.smooth_rate - bias)), &(gyro * interval.slope));
                     impulse += middle * (accel * (interval.force - force_bias) - swung) * dt_s;
                 }
                 rotation = earth * rotation * turn;
@@ -184,4 +183,9 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
     }
     residual.extend_from_slice((rotation * to.rotation(x).inverse()).scaled_axis().as_slice());
     DVector::from_vec(residual)
+}
+
+/// Acceleration of a point that turns about another, `ω × (ω × l) + ω̇ × l`.
+fn swung(lever: &Vector3<f64>, rate: &Vector3<f64>, slope: &Vector3<f64>) -> Vector3<f64> {
+    rate.cross(&rate.cross(lever)) + slope.cross(lever)
 }
