@@ -69,18 +69,27 @@ pub fn session(config: &SchemeConfig, stops: TurnStops, faces: BoxFaces) -> Sess
 impl Session {
     /// Every number with a sigma.
     pub fn deviations(&self) -> Vec<Deviation> {
-        let (accel, gyro) = (&self.truth.accelerometer, &self.truth.gyroscope);
-        let truths = accel.bias_mps2.iter().chain(accel.correction.iter().flatten());
-        let truths = truths.chain(&gyro.bias_rad_s).chain(gyro.correction.iter().flatten());
         self.estimate
             .calibration
             .parameters()
-            .zip(truths)
+            .zip(self.truths())
             .filter_map(|(parameter, truth)| {
                 let sigma = f64::from(parameter.sigma.filter(|sigma| *sigma > 0.0)?);
                 Some(Deviation { name: parameter.name, error: f64::from(parameter.value) - truth, sigma })
             })
             .collect()
+    }
+
+    /// Errors of all numbers, in the order of the covariance.
+    pub fn errors(&self) -> Vec<f64> {
+        let values = self.estimate.calibration.parameters().map(|parameter| f64::from(parameter.value));
+        values.zip(self.truths()).map(|(value, truth)| value - truth).collect()
+    }
+
+    fn truths(&self) -> impl Iterator<Item = f64> + '_ {
+        let (accel, gyro) = (&self.truth.accelerometer, &self.truth.gyroscope);
+        let truths = accel.bias_mps2.iter().chain(accel.correction.iter().flatten());
+        truths.chain(&gyro.bias_rad_s).chain(gyro.correction.iter().flatten()).copied()
     }
 }
 

@@ -1,63 +1,100 @@
 //! The device's `f32` passes against the references in `f64` on the same sessions.
 
+use nalgebra::Matrix3;
 use tumble::calibrate::{Method, Session, estimate};
-use tumble::reference::{batch, data};
+use tumble::reference::batch::{self, Batch, MeanNoise};
+use tumble::reference::data::{self, Stretch};
 use tumble::study::trial::readings;
-use tumble_core::calibration::Verdict;
+use tumble_core::calibration::{Calibration, Verdict};
 use tumble_core::estimate::Conditions;
 use tumble_core::procedure::{BoxFaces, TurnStops};
-use tumble_sim::scheme::Imperfection;
 use tumble_sim::{Scheme, SchemeConfig};
 
 fn conditions(faces: BoxFaces) -> Conditions {
     Conditions { stops: TurnStops::Fenced, faces, ..Conditions::CAUTIOUS }
 }
 
-/// Largest differences of the gyroscope's correction, device less batch: scale, K, and over sigma.
-fn differences(scheme: Scheme, seed: u64, faces: BoxFaces, from_records: bool) -> (f64, f64, f64) {
-    // The batch does not know that a box turns about its face's normal; where the hand wobbles, the device does not either.
-    let config = SchemeConfig::new(scheme, seed).with(Imperfection::Wobble(1.0));
-    let recording = config.record().expect("a valid configuration");
+/// Batch solutions of one session, as the device went and as the samples have it.
+struct Solutions {
+    device: Calibration,
+    /// From the device's records, a group's noise lumped as the device has it.
+    lumped: Batch,
+    /// From the same, a group's mean seeing its exact share.
+    records: Batch,
+    /// From the samples.
+    samples: Batch,
+}
+
+/// Largest differences of the gyroscope's correction.
+#[derive(Clone, Copy, Debug)]
+struct Apart {
+    scale_ppm: f64,
+    cross_urad: f64,
+    /// Of any element, over its sigma.
+    sigmas: f64,
+    /// Largest ratio of two sigmas, less 1.
+    sigma_ratio: f64,
+}
+
+fn solve(scheme: Scheme, seed: u64, faces: BoxFaces) -> Solutions {
+    let recording = SchemeConfig::new(scheme, seed).record().expect("a valid configuration");
     let readings = readings(&recording.samples);
     let conditions = conditions(faces);
     let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions };
     let (tape, _) = session.tape(1.0);
     let (device, noise) = estimate(&tape, conditions, &mut |_| {}).expect("an estimate");
-    let stretches = if from_records { data::records(&tape) } else { data::stretches(tape.segments(), &readings) };
-    let batch = batch::estimate(&stretches, &conditions, &device, &noise).expect("a solution");
-    let gyro = &device.calibration.gyroscope;
-    let (mut scale, mut cross, mut sigmas) = (0.0f64, 0.0f64, 0.0f64);
+    let bias = device.calibration.gyroscope.triad.bias.cast();
+    let [records, samples] = [data::records(&tape, &bias), data::stretches(tape.segments(), &readings)];
+    let solve = |stretches: &[Stretch], mean_noise| {
+        batch::estimate(stretches, &conditions, &device, &noise, mean_noise).expect("a solution")
+    };
+    Solutions {
+        device: device.calibration,
+        lumped: solve(&records, MeanNoise::Lumped),
+        records: solve(&records, MeanNoise::Exact),
+        samples: solve(&samples, MeanNoise::Exact),
+    }
+}
+
+fn apart(a: (&Matrix3<f64>, &Matrix3<f64>), b: (&Matrix3<f64>, &Matrix3<f64>)) -> Apart {
+    let mut apart = Apart { scale_ppm: 0.0, cross_urad: 0.0, sigmas: 0.0, sigma_ratio: 0.0 };
     for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
-        let difference = (f64::from(gyro.triad.correction[(i, j)]) - batch.gyro.correction[(i, j)]).abs();
-        let ratio = f64::from(gyro.correction_sigma[(i, j)]) / batch.gyro.correction_sigma[(i, j)];
-        assert!((ratio - 1.0).abs() < 0.02, "sigmas of {i}{j} differ by {ratio}");
-        sigmas = sigmas.max(difference / batch.gyro.correction_sigma[(i, j)]);
-        *(if i == j { &mut scale } else { &mut cross }) = difference.max(if i == j { scale } else { cross });
+        let difference = (a.0[(i, j)] - b.0[(i, j)]).abs();
+        let largest = if i == j { &mut apart.scale_ppm } else { &mut apart.cross_urad };
+        *largest = largest.max(1e6 * difference);
+        apart.sigmas = apart.sigmas.max(difference / b.1[(i, j)]);
+        apart.sigma_ratio = apart.sigma_ratio.max((a.1[(i, j)] / b.1[(i, j)] - 1.0).abs());
     }
-    println!(
-        "{} {seed} {faces:?} from {}: scale {:.2} ppm, K {:.2} urad, {sigmas:.3} sigma, chi² {:.3}",
-        scheme.name(),
-        if from_records { "records" } else { "samples" },
-        scale * 1e6,
-        cross * 1e6,
-        batch.chi_square_per_dof
-    );
-    (scale * 1e6, cross * 1e6, sigmas)
+    apart
 }
 
-#[test]
-fn on_its_own_records_the_device_is_the_batch_solution() {
-    for (scheme, faces) in [(Scheme::Single, BoxFaces::Square), (Scheme::Double, BoxFaces::Unknown)] {
-        let (.., sigmas) = differences(scheme, 1, faces, true);
-        assert!(sigmas < 0.15, "{sigmas} sigma");
+impl Solutions {
+    /// Device against lumped, lumped against exact, records against samples.
+    fn chain(&self) -> [Apart; 3] {
+        let gyro = &self.device.gyroscope;
+        let device = (gyro.triad.correction.cast(), gyro.correction_sigma.cast());
+        let of = |batch: &Batch| (batch.gyro.correction, batch.gyro.correction_sigma);
+        let links = [device, of(&self.lumped), of(&self.records), of(&self.samples)];
+        [0, 1, 2].map(|k| apart((&links[k].0, &links[k].1), (&links[k + 1].0, &links[k + 1].1)))
     }
 }
 
+/// The plate in turns is in the square ones. Equal sigmas say that both saw the same with the same weights; that two minima of it lie
+/// a sixth of a sigma apart is what was measured at most over these and seed 2 (docs/method.md, §5).
 #[test]
-fn records_cost_less_than_a_sigma_against_samples() {
-    for (scheme, faces) in [(Scheme::Single, BoxFaces::Square), (Scheme::Double, BoxFaces::Unknown)] {
-        let (.., sigmas) = differences(scheme, 1, faces, false);
-        assert!(sigmas < 0.8, "{sigmas} sigma");
+fn the_device_is_the_batch_solution_link_by_link() {
+    let sessions =
+        [(Scheme::Single, BoxFaces::Square), (Scheme::Double, BoxFaces::Square), (Scheme::Double, BoxFaces::Unknown)];
+    for (scheme, faces) in sessions {
+        let solutions = solve(scheme, 1, faces);
+        let [arithmetic, mean_noise, records] = solutions.chain();
+        println!("{} {faces:?}: chi² {:.3}", scheme.name(), solutions.samples.chi_square_per_dof);
+        println!("  f32 passes, records: {arithmetic:.3?}");
+        println!("  lumped noise:        {mean_noise:.3?}");
+        println!("  records for samples: {records:.3?}");
+        assert!(arithmetic.sigmas < 0.25 && arithmetic.sigma_ratio < 0.01, "{arithmetic:?}");
+        assert!(mean_noise.sigmas < 0.15 && mean_noise.sigma_ratio < 0.03, "{mean_noise:?}");
+        assert!(records.sigmas < 0.8 && records.sigma_ratio < 0.01, "{records:?}");
     }
 }
 

@@ -10,10 +10,10 @@ use nalgebra::Vector3;
 use crate::face::Face;
 
 /// One unit of rotation, rad: ±32767 units reach ±1 rad, which a record of one 62.5 Hz sample fills at 3600 °/s.
-const ANGLE_UNIT_RAD: f32 = 1.0 / 32768.0;
+pub const ANGLE_UNIT_RAD: f32 = 1.0 / 32768.0;
 /// One unit of specific force, m/s² (50 µg): ±16 m/s² reach beyond any still or turn on a table; hand moves, whose
 /// specific force is not used, may saturate.
-const FORCE_UNIT_MPS2: f32 = 1.0 / 2048.0;
+pub const FORCE_UNIT_MPS2: f32 = 1.0 / 2048.0;
 /// One unit of time, µs: 65 535 units reach 0.65 s.
 const TIME_UNIT_US: f32 = 10.0;
 
@@ -22,7 +22,7 @@ const TIME_UNIT_US: f32 = 10.0;
 pub struct Record {
     /// Length, s.
     pub dt_s: f32,
-    /// Rotation vector by the raw gyroscope (coning included), rad, sensor axes.
+    /// Rotation vector by the raw gyroscope, rad, sensor axes; coning included, of rates less the resting rate.
     pub rotation_rad: Vector3<f32>,
     /// Mean raw specific force, m/s², sensor axes.
     pub specific_force_mps2: Vector3<f32>,

@@ -84,7 +84,12 @@ impl Closures {
         let gravity: [(f32, f32); 3] = core::array::from_fn(|axis| {
             let (k, variance) = scales[axis];
             let information = 1.0 / variance - self.current.information[axis];
-            if information > 0.0 { (information, k / variance - self.current.product[axis]) } else { (0.0, 0.0) }
+            // A difference of two sums: below a hundredth of them it is `f32`'s rounding.
+            if information > 0.01 / variance {
+                (information, k / variance - self.current.product[axis])
+            } else {
+                (0.0, 0.0)
+            }
         });
         let first = range.start;
         self.any.then(|| {

@@ -17,7 +17,7 @@ const GRID: usize = 25;
 const CERTAIN: f32 = 9.55;
 
 /// No table leans by more than this, and no face by more from the first one, 1 (10° and 6°): what does is no face on a table.
-const LEANING: f32 = 0.17;
+pub const LEANING: f32 = 0.17;
 const APART: f32 = 0.1;
 
 /// Sums over a pass.

@@ -62,26 +62,3 @@ impl Group {
         filter.observe_vector(&observation.rows, &observation.residual, variance)
     }
 }
-
-/// How much noisier than rest a turn's readings are: innovations against what they should be.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct TurnNoise {
-    squares: f32,
-    variances: f32,
-    noise: f32,
-}
-
-impl TurnNoise {
-    /// Takes a group's innovations, whose readings were given `variance`.
-    pub fn take(&mut self, innovations: &[Innovation; 3], variance: f32) {
-        let values = Vector3::from(innovations.map(|innovation| innovation.value));
-        self.squares += values.norm_squared();
-        self.variances += innovations.iter().map(|innovation| innovation.variance).sum::<f32>();
-        self.noise += 3.0 * variance;
-    }
-
-    /// What the variance should be multiplied by for squares to agree with variances; none without data.
-    pub fn factor(&self) -> Option<f32> {
-        (self.noise > 0.0).then(|| 1.0 + (self.squares - self.variances) / self.noise)
-    }
-}

@@ -40,6 +40,15 @@ impl Nominal {
         self.gyro.correction * (record.rotation_rad - self.gyro.bias * record.dt_s)
     }
 
+    /// What is wrong with the coning in a record's rotation vector, rad, frame b. It was summed in uncorrected rates, `½ ∫ θ × ω`; of a
+    /// rate with the slope ω̇ that is `ω × ω̇ T³/12`, and the correction belongs inside the product. A move by hand has some
+    /// 0.2 mrad of it in a record, of which 5 % are 10 µrad: sheet noise hides that, a sensor five times as quiet does not.
+    pub fn coning(&self, record: &Record, slope: &Vector3<f32>) -> Vector3<f32> {
+        let raw = record.rotation_rad / record.dt_s - self.gyro.bias;
+        let ideal = (self.gyro.correction * raw).cross(&(self.gyro.correction * slope));
+        (ideal - self.gyro.correction * raw.cross(slope)) * (record.dt_s * record.dt_s * record.dt_s / 12.0)
+    }
+
     /// Specific force of a record, calibrated, m/s², frame b.
     pub fn force(&self, record: &Record) -> Vector3<f32> {
         self.accel.compensate(&record.specific_force_mps2)
@@ -197,6 +206,30 @@ pub fn lever(rate: &Vector3<f32>, acceleration: &Vector3<f32>) -> Matrix3<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A record of a rate that changes its direction, by a crooked and offset gyroscope, against the true rotation in small steps.
+    #[test]
+    fn coning_is_that_of_corrected_rates() {
+        let correction = Matrix3::new(1.03, 0.02, -0.01, -0.02, 0.98, 0.015, 0.01, -0.02, 1.02);
+        let bias = Vector3::new(0.08, -0.06, 0.05);
+        let accel = Triad::identity();
+        let nominal = Nominal { gyro: Triad { bias, correction }, accel, earth_rad_s: Vector3::zeros() };
+        let (rate, slope, dt_s) = (Vector3::new(2.0f32, -1.0, 0.5), Vector3::new(-6.0f32, 5.0, 8.0), 1.0 / 12.0);
+        let steps = 400;
+        let mut truth = UnitQuaternion::<f64>::identity();
+        for step in 0..steps {
+            let t_s = (step as f32 + 0.5) * dt_s / steps as f32;
+            let turn = correction * (rate + slope * (t_s - 0.5 * dt_s)) * (dt_s / steps as f32);
+            truth *= UnitQuaternion::from_scaled_axis(turn.cast());
+        }
+        let summed = rate * dt_s + rate.cross(&slope) * (dt_s * dt_s * dt_s / 12.0);
+        let record = Record { dt_s, rotation_rad: summed + bias * dt_s, specific_force_mps2: Vector3::zeros() };
+        let error = |rotation: Vector3<f32>| (rotation.cast::<f64>() - truth.scaled_axis()).norm();
+        let (with, without) =
+            (error(nominal.rotation(&record) + nominal.coning(&record, &slope)), error(nominal.rotation(&record)));
+        // What is left is the third order, θ² times the coning's 1.4 mrad over ten.
+        assert!(with < 6e-6 && without > 10.0 * with, "{with:e} {without:e}");
+    }
 
     #[test]
     fn levelling_is_exact_for_tiny_tilts_and_whole_for_upside_down() {

@@ -9,12 +9,20 @@ use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
-use crate::tape::{Kind, Segment, Tape};
+use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Kind, Segment, Tape};
 
 /// MPU-9250 sheet: 0.01 °/s/√Hz. The double-sided density of a rate is half of its square.
 pub const SHEET_RATE_DENSITY: f32 = 0.01 * DEGREE_RAD * core::f32::consts::FRAC_1_SQRT_2;
 /// MPU-9250 sheet: 300 µg/√Hz, likewise.
 pub const SHEET_FORCE_DENSITY: f32 = 300e-6 * crate::STANDARD_GRAVITY_MPS2 * core::f32::consts::FRAC_1_SQRT_2;
+/// Variance of a sum over records by the tape's rounding in its units squared: with its remainder carried into the next record it
+/// is that of two roundings, one at each end, whatever the sum's length.
+pub const ROUNDED: f32 = 1.0 / 6.0;
+/// The same of a difference of neighbours, `−r₁ + 2 r₂ − r₃`: what the rests' scatter has of it.
+const ROUNDED_DIFFERENCE: f32 = 0.5;
+/// Length of a record at rest, and of the shortest sum whose rounding matters, s.
+pub const REST_RECORD_S: f32 = 0.5;
+const SHORTEST_S: f32 = 2.0;
 /// A person who stops by eye (sim, `design.md` §2), before its closures are seen.
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
 /// What a stop against a fence is taken for before its innovations are seen.
@@ -31,7 +39,7 @@ const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const FORCE_WALK_FLOOR: f32 = 1e-11;
 const FORCE_WALK_CAP: f32 = 1e-5;
 
-/// Densities and sigmas in force.
+/// Densities and sigmas in force. The densities leave the tape's rounding of a single record out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Variance of a rotation per second of integration, rad²/s.
@@ -80,13 +88,9 @@ impl Noise {
                 let _ = force.push((scatter.force, scatter.count));
             }
         }
-        let bounded = |found: Option<f32>, sheet: f32| {
-            let sheet = sheet * sheet;
-            found.unwrap_or(sheet).clamp(0.01 * sheet, 1e4 * sheet)
-        };
         Self {
-            rate_density: bounded(pooled(&mut rate), SHEET_RATE_DENSITY),
-            force_density: bounded(pooled(&mut force), SHEET_FORCE_DENSITY),
+            rate_density: density(pooled(&mut rate), SHEET_RATE_DENSITY, ANGLE_UNIT_RAD),
+            force_density: density(pooled(&mut force), SHEET_FORCE_DENSITY, FORCE_UNIT_MPS2 * REST_RECORD_S),
             bias_walk: WALK_FLOOR,
             bias_slope: Vector3::zeros(),
             slope_walk: 0.0,
@@ -99,6 +103,14 @@ impl Noise {
             rocking_sigma_rad: UNSEEN,
             quiet_variance,
         }
+    }
+
+    /// What a pass takes for noise at least: that of the sheet under the widest prior, and less in proportion under a narrower
+    /// one, `width` being its share of the widest. Beside an attitude's prior of 0.1 rad `f32` keeps 24 µrad (a 6e-8th of the
+    /// variance), where a rest of 2.5 s at the sheet's noise leaves 130 µrad and one of a sensor ten times as quiet 13.
+    pub fn at_least(&self, width: f32) -> Self {
+        let [rate, force] = [SHEET_RATE_DENSITY, SHEET_FORCE_DENSITY].map(|sheet| sheet * sheet * width * width);
+        Self { rate_density: self.rate_density.max(rate), force_density: self.force_density.max(force), ..*self }
     }
 
     /// Do all parts agree to within a share?
@@ -167,6 +179,15 @@ impl Noise {
     pub fn total_bias_walk(&self) -> f32 {
         self.bias_walk + self.slope_walk
     }
+}
+
+/// From the rests' scatter. Its share of rounding goes out and that of a sum comes in, which is the least there is: the sheet's sigma
+/// over 14 for the gyroscope, over 30 for the accelerometer.
+fn density(found: Option<f32>, sheet: f32, unit: f32) -> f32 {
+    let scatter = 0.5 * ROUNDED_DIFFERENCE / REST_RECORD_S * unit * unit;
+    let sum = ROUNDED / SHORTEST_S * unit * unit;
+    let sheet = sheet * sheet;
+    found.map_or(sheet, |found| (found - scatter).max(0.0) + sum).min(1e4 * sheet)
 }
 
 /// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which

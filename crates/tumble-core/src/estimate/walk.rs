@@ -9,24 +9,24 @@ use super::closures::Closures;
 use super::drift::Drift;
 use super::facets::{Facets, SQUARE};
 use super::filter::{Filter, Innovation};
-use super::group::{Group, TurnNoise};
+use super::group::Group;
 use super::model::{self, Nominal, Observation};
 use super::noise::Noise;
 use super::state::Block;
-use super::sums::{SegmentNoise, Sums};
+use super::sums::{Excess, SegmentNoise, Sums};
 use super::wobble::Wobble;
 use crate::face::Face;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
 
 /// Records of a turn that make one step of the filter: half a second.
-const GROUP: u16 = 6;
+pub const GROUP: u16 = 6;
 /// Groups from one look at the plate to the next, 1.5 s: gyroscope and gravity together forget an attitude error in 1.7 s, so that
 /// more looks would tell little more.
-const PLATED: u16 = 3;
+pub const PLATED: u16 = 3;
 /// What a hand's tremor leaves in a group's mean normal, rad: 0.005° at 8–12 Hz, seen twelve times a second.
-const WHITE: f32 = 30e-6;
+pub const WHITE: f32 = 30e-6;
 /// A wobble fades in and out and has overtones: this share of the variance of what turns with the box does not.
-const UNSTEADY: f32 = 0.25;
+pub const UNSTEADY: f32 = 0.25;
 /// How much noisier than rest a turn is taken for before its innovations are seen.
 const TURN_FORCE_SCALE: f32 = 25.0;
 
@@ -67,7 +67,8 @@ pub struct Walk<const S: usize> {
     chains: u16,
     visit: Option<Visit>,
     group: Group,
-    turn_noise: TurnNoise,
+    /// How much noisier its readings are than they are taken to be.
+    turn_noise: Excess,
     /// Groups of this turn since the plate was last looked at.
     unplated: u16,
     last_rest_us: u64,
@@ -75,6 +76,15 @@ pub struct Walk<const S: usize> {
     hinge: Option<usize>,
     move_s: f32,
     level_variance: f32,
+    /// The widest prior sigma of a correction or, over gravity, of the accelerometer's bias, 1.
+    width: f32,
+}
+
+/// The widest sigma of a correction in a prior or, over gravity, of the accelerometer's bias, 1.
+fn widest(prior: &Filter, gravity: f32) -> f32 {
+    let widest = |block: Block| block.range().fold(0.0f32, |widest, i| widest.max(prior.covariance()[(i, i)]));
+    let corrections = widest(Block::GyroCorrection).max(widest(Block::AccelCorrection));
+    libm::sqrtf(corrections.max(widest(Block::AccelBias) / (gravity * gravity)))
 }
 
 /// A stay on one face.
@@ -91,6 +101,7 @@ impl<const S: usize> Walk<S> {
     /// Nothing walked yet; `filter` holds the prior about the nominal.
     pub fn new(nominal: Nominal, gravity: f32, filter: Filter) -> Self {
         Self {
+            width: widest(&filter, gravity),
             filter,
             noise: Vec::new(),
             sums: Sums::default(),
@@ -113,7 +124,7 @@ impl<const S: usize> Walk<S> {
             chains: 0,
             visit: None,
             group: Group::default(),
-            turn_noise: TurnNoise::default(),
+            turn_noise: Excess::default(),
             unplated: 0,
             last_rest_us: 0,
             hinge: None,
@@ -131,14 +142,20 @@ impl<const S: usize> Walk<S> {
     /// and whether it is still learnt. In place: a new `Walk` on the stack would take 11 KB, twice where moves are not elided.
     pub fn restart(&mut self, nominal: Nominal, prior: &Filter) {
         self.filter.clone_from(prior);
+        self.width = widest(prior, self.gravity);
         (self.sums, self.closures, self.facets) = (Sums::default(), Closures::default(), Facets::default());
         (self.drift, self.wobble) = (Drift::default(), Wobble::default());
         (self.plated, self.coarse, self.aligned, self.table_known) = (true, true, false, false);
         (self.nominal, self.now, self.time_s) = (nominal, nominal, 0.0);
         (self.segment, self.record, self.chains, self.unplated) = (0, 0, 0, 0);
         (self.attitude, self.visit, self.hinge) = (UnitQuaternion::identity(), None, None);
-        (self.group, self.turn_noise) = (Group::default(), TurnNoise::default());
+        (self.group, self.turn_noise) = (Group::default(), Excess::default());
         (self.last_rest_us, self.move_s, self.level_variance) = (0, 0.0, 0.0);
+    }
+
+    /// The widest prior sigma of this pass, 1.
+    pub fn width(&self) -> f32 {
+        self.width
     }
 
     /// Segments walked, for a progress display.
@@ -177,7 +194,7 @@ impl<const S: usize> Walk<S> {
         let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
         self.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
         self.group = Group::default();
-        self.turn_noise = TurnNoise::default();
+        self.turn_noise = Excess::default();
         self.unplated = 0;
         if segment.is_usable_still() {
             self.enter_still(tape, segment, noise);
@@ -219,16 +236,20 @@ impl<const S: usize> Walk<S> {
         }
         self.move_s += record.dt_s;
         let on_table = matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None;
-        let lever = on_table.then(|| self.lever(tape, index, record));
-        self.turn(record, lever.as_ref());
+        let slope = slope(tape, index, record);
+        let lever = on_table.then(|| {
+            let turn = self.now.rotation(record) / record.dt_s;
+            model::lever(&turn, &(self.now.gyro.correction * slope))
+        });
+        self.turn(record, &slope, lever.as_ref());
         if on_table && self.group.records == GROUP {
             self.close_group(segment, noise);
         }
     }
 
     /// Carries the nominal attitude over a record and adds the record to the group.
-    fn turn(&mut self, record: &Record, lever: Option<&Matrix3<f32>>) {
-        let rotation = self.now.rotation(record);
+    fn turn(&mut self, record: &Record, slope: &Vector3<f32>, lever: Option<&Matrix3<f32>>) {
+        let rotation = self.now.rotation(record) + self.now.coning(record, slope);
         let middle = self.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
         let gravity = lever.map(|lever| self.now.gravity(record, &to_n, self.gravity, lever));
@@ -237,14 +258,6 @@ impl<const S: usize> Walk<S> {
         let earth = UnitQuaternion::from_scaled_axis(self.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.attitude = UnitQuaternion::new_normalize(next.into_inner());
-    }
-
-    fn lever<const R: usize>(&self, tape: &Tape<R, S>, index: usize, record: &Record) -> Matrix3<f32> {
-        let rate = |record: &Record| self.now.rotation(record) / record.dt_s;
-        let before = index.checked_sub(1).and_then(|index| tape.record(index)).unwrap_or(*record);
-        let after = tape.record(index + 1).unwrap_or(*record);
-        let span = 0.5 * (before.dt_s + after.dt_s) + record.dt_s;
-        model::lever(&rate(record), &((rate(&after) - rate(&before)) / span))
     }
 
     fn close_group(&mut self, segment: &Segment, noise: &Noise) {
@@ -257,7 +270,7 @@ impl<const S: usize> Walk<S> {
         if matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None {
             let variance = noise.force_density / group.seconds * own.force_scale;
             let innovations = group.observe(&mut self.filter, self.gravity, variance);
-            self.turn_noise.take(&innovations, variance);
+            innovations.iter().for_each(|innovation| self.turn_noise.take(innovation, variance));
             self.plate_in_turn(segment, &group, noise);
         }
     }
@@ -315,9 +328,9 @@ impl<const S: usize> Walk<S> {
         {
             self.learn_pivot(noise);
             self.learn_wobble(noise);
-            if let Some(factor) = self.turn_noise.factor().filter(|_| self.adapting) {
+            if let Some((excess, _)) = self.turn_noise.value().filter(|_| self.adapting) {
                 let scale = &mut self.noise[self.segment].force_scale;
-                *scale = (*scale * factor).clamp(1.0, 1e6);
+                *scale = (*scale * (1.0 + excess)).clamp(1.0, 1e6);
             }
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
@@ -339,4 +352,13 @@ impl<const S: usize> Walk<S> {
             }
         }
     }
+}
+
+/// Slope of the raw rate over a record and its neighbours, rad/s².
+fn slope<const R: usize, const S: usize>(tape: &Tape<R, S>, index: usize, record: &Record) -> Vector3<f32> {
+    let rate = |record: &Record| record.rotation_rad / record.dt_s;
+    let before = index.checked_sub(1).and_then(|index| tape.record(index)).unwrap_or(*record);
+    let after = tape.record(index + 1).unwrap_or(*record);
+    let span = 0.5 * (before.dt_s + after.dt_s) + record.dt_s;
+    (rate(&after) - rate(&before)) / span
 }

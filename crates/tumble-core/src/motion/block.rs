@@ -53,7 +53,10 @@ pub struct Accumulator {
     last: Option<Sample>,
     record_s: f32,
     rotation: Vector3<f32>,
+    /// The same of the rate less the resting rate.
+    turned: Vector3<f32>,
     coning: Vector3<f32>,
+    resting_rate: Vector3<f32>,
     impulse: Vector3<f32>,
     block_s: f32,
     samples: u32,
@@ -86,7 +89,9 @@ impl Accumulator {
             last: None,
             record_s: 0.0,
             rotation: ZERO,
+            turned: ZERO,
             coning: ZERO,
+            resting_rate: ZERO,
             impulse: ZERO,
             block_s: 0.0,
             samples: 0,
@@ -99,6 +104,11 @@ impl Accumulator {
             clipped: 0,
             clipped_samples: 0,
         }
+    }
+
+    /// What the gyroscope shows at rest, rad/s, from the next sample on: set it between two records.
+    pub fn set_resting_rate(&mut self, rate: Vector3<f32>) {
+        self.resting_rate = rate;
     }
 
     /// Takes one sample. Time that stands still or runs backwards is passed over.
@@ -126,10 +136,13 @@ impl Accumulator {
         }
     }
 
-    /// Rotation vector of a varying rate: `Σ Δθ + ½ Σ θ × Δθ` (Bortz's equation to second order).
+    /// Rotation vector of a varying rate: `Σ Δθ + ½ Σ θ × Δθ` (Bortz's equation to second order), the product of rates less
+    /// the resting rate: an offset of 5 °/s would add 40 µrad to a record of a move by hand.
     fn integrate(&mut self, last: &Sample, sample: &Sample, dt: f32) {
         let step = (last.angular_rate_rad_s + sample.angular_rate_rad_s) * (0.5 * dt);
-        self.coning += self.rotation.cross(&step) * 0.5;
+        let turn = step - self.resting_rate * dt;
+        self.coning += self.turned.cross(&turn) * 0.5;
+        self.turned += turn;
         self.rotation += step;
         self.impulse += (last.specific_force_mps2 + sample.specific_force_mps2) * (0.5 * dt);
         self.record_s += dt;
@@ -161,6 +174,7 @@ impl Accumulator {
         };
         self.record_s = 0.0;
         self.rotation = Vector3::zeros();
+        self.turned = Vector3::zeros();
         self.coning = Vector3::zeros();
         self.impulse = Vector3::zeros();
         record

@@ -157,6 +157,10 @@ impl Segmenter {
             State::Moving { .. } => self.while_moving(block, &excess, tape, events),
             State::Still { .. } => self.while_still(block, &excess, tape, events),
         };
+        // A block ends with a record.
+        if let Some(rate) = self.stillness.resting_rate() {
+            self.accumulator.set_resting_rate(rate);
+        }
         self.block_first = tape.len();
         self.block_start_us = block.end_us;
         result

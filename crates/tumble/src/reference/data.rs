@@ -46,28 +46,31 @@ pub fn stretches(segments: &[Segment], readings: &[Reading]) -> Vec<Stretch> {
     segments.iter().enumerate().filter_map(|(number, segment)| stretch(number, segment, readings)).collect()
 }
 
-/// The same from the tape's own records: what the device itself works from.
-pub fn records(tape: &HostTape) -> Vec<Stretch> {
+/// The same from the tape's own records, what the device itself works from; `resting_rate` in rad/s.
+pub fn records(tape: &HostTape, resting_rate: &Vector3<f64>) -> Vec<Stretch> {
     let all = (0..tape.len()).filter_map(|index| tape.record(index)).collect::<Vec<Record>>();
     let stretch = |(number, segment): (usize, &Segment)| {
         let range = usize::from(segment.first)..usize::from(segment.end);
-        assemble(number, segment, range.map(|index| recorded(&all, index)).collect())
+        assemble(number, segment, range.map(|index| recorded(&all, resting_rate, index)).collect())
     };
     tape.segments().iter().enumerate().filter_map(stretch).collect()
 }
 
-fn recorded(records: &[Record], index: usize) -> Interval {
+fn recorded(records: &[Record], resting_rate: &Vector3<f64>, index: usize) -> Interval {
     let record = &records[index];
     let rate = |record: &Record| record.rotation_rad.cast::<f64>() / f64::from(record.dt_s);
     let before = index.checked_sub(1).map_or(record, |before| &records[before]);
     let after = records.get(index + 1).unwrap_or(record);
-    let span_s = f64::from(0.5 * (before.dt_s + after.dt_s) + record.dt_s);
+    let (dt_s, span_s) = (f64::from(record.dt_s), f64::from(0.5 * (before.dt_s + after.dt_s) + record.dt_s));
+    let slope = (rate(after) - rate(before)) / span_s;
+    // The record's own coning, summed in rates less the resting rate, goes out: `turned` has it anew from the slope.
+    let mean = rate(record) - (rate(record) - resting_rate).cross(&slope) * (dt_s * dt_s / 12.0);
     Interval {
-        dt_s: f64::from(record.dt_s),
-        rates: [rate(record); 2],
+        dt_s,
+        rates: [-0.5, 0.5].map(|end| mean + slope * (end * dt_s)),
         force: record.specific_force_mps2.cast(),
         smooth_rate: rate(record),
-        slope: (rate(after) - rate(before)) / span_s,
+        slope,
     }
 }
 

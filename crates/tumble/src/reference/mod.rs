@@ -32,7 +32,7 @@ pub fn batch(
     noise: &[SegmentNoise],
 ) -> Option<(Calibration, Covariance)> {
     let stretches = data::stretches(tape.segments(), readings);
-    let batch = batch::estimate(&stretches, conditions, start, noise)?;
+    let batch = batch::estimate(&stretches, conditions, start, noise, batch::MeanNoise::Exact)?;
     let fit = fit(&stretches, &batch.accel, conditions, &start.calibration.fit, batch.chi_square_per_dof as f32);
     let found = calibration(&batch.accel, &batch.gyro, conditions.frame(), fit, tape.temperature_degc());
     Some((found, batch.covariance.cast()))

@@ -147,7 +147,8 @@ fn closed_forms_are_exact_where_there_is_no_noise() {
 #[test]
 fn three_turns_are_enough_and_unturned_faces_solve_their_tilt() {
     let [gyro, gyro_bias, accel, accel_bias] = errors(&[Face::PlusX, Face::MinusY, Face::PlusZ]);
-    assert!(gyro < 6e-6 && gyro_bias < 2e-6, "{gyro:e} {gyro_bias:e}");
+    // One of the tape's 31 µrad over a rest of 10 s; noise being taken for no more than that rounding, Earth's rate takes some of it.
+    assert!(gyro < 6e-6 && gyro_bias < 3.1e-6, "{gyro:e} {gyro_bias:e}");
     assert!(accel < 3e-5 && accel_bias < 1.5e-4, "{accel:e} {accel_bias:e}");
 }
 

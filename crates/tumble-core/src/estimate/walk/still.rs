@@ -5,21 +5,23 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::{Visit, Walk};
 use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
-use crate::estimate::noise::{self, Noise};
+use crate::estimate::noise::{self, Noise, ROUNDED};
 use crate::estimate::state::Block;
 use crate::face::Face;
 use crate::motion::path::WHOLE_TURN;
-use crate::tape::{Record, Segment, Tape};
+use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Record, Segment, Tape};
 
 /// How well a face's contact with the table repeats, rad: 0.25 µm over 5 cm, below all that shows.
 const CONTACT_SIGMA: f32 = 5e-6;
-/// … and what it is taken for under the wide prior of the first passes: `f32` resolves a 6e-8th of a variance, and beside the
-/// prior's 0.06 that is 15 µrad.
-const COARSE_SIGMA: f32 = 100e-6;
+/// … and at least what it is taken for as a share of the prior's sigma: `f32` resolves a 6e-8th of a variance, which is 15 µrad
+/// beside 0.06, and thirty roundings' worth of that is 80.
+const RESOLVED: f32 = 1.0 / 600.0;
 /// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
 pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 /// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
 const LEVEL_SIGMA: f32 = 0.1;
+/// The level's prior in sigmas of the rest's own noise: as wide as `prior::narrow` makes the others.
+const LEVEL_WIDTH: f32 = 30.0;
 
 impl<const S: usize> Walk<S> {
     pub(super) fn enter_still<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, noise: &Noise) {
@@ -77,8 +79,11 @@ impl<const S: usize> Walk<S> {
     /// Starts anew: heading is zero here by definition, and what is known in frame n is known no longer.
     fn align(&mut self) {
         self.aligned = true;
-        self.filter.reset(Block::Attitude, 0, 0.0, LEVEL_SIGMA);
-        self.filter.reset(Block::Attitude, 1, 0.0, LEVEL_SIGMA);
+        // No wider than what it was levelled by: the accelerometer under this pass's prior, and the rest's own noise.
+        let own = LEVEL_WIDTH * libm::sqrtf(self.level_variance);
+        let level = libm::hypotf(2.0 * self.width, own).min(LEVEL_SIGMA);
+        self.filter.reset(Block::Attitude, 0, 0.0, level);
+        self.filter.reset(Block::Attitude, 1, 0.0, level);
         self.filter.reset(Block::Attitude, 2, 0.0, 0.0);
         self.table_known = false;
         self.chains += 1;
@@ -106,7 +111,7 @@ impl<const S: usize> Walk<S> {
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
         let plane = face.plane().map(|axis| self.attitude * axis);
-        let contact = if self.coarse { COARSE_SIGMA } else { CONTACT_SIGMA };
+        let contact = CONTACT_SIGMA.max(RESOLVED * self.width);
         let variance = contact * contact;
         if !self.plated {
             return;
@@ -154,11 +159,12 @@ impl<const S: usize> Walk<S> {
     pub(super) fn rest(&mut self, segment: &Segment, record: &Record, noise: &Noise) {
         let solid = noise::is_solid(segment, noise.quiet_variance);
         if !solid {
-            self.turn(record, None);
+            self.turn(record, &Vector3::zeros(), None);
             core::mem::take(&mut self.group).propagate(&mut self.filter, noise.rate_density);
         }
         let to_n = self.attitude.to_rotation_matrix().into_inner();
-        let variance = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let own = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let variance = own + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         let observation = parts.observation(self.gravity, None);
@@ -177,7 +183,8 @@ impl<const S: usize> Walk<S> {
     }
 
     fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
-        let variance = noise.rate_density / record.dt_s;
+        let rounded = ANGLE_UNIT_RAD / record.dt_s;
+        let variance = noise.rate_density / record.dt_s + ROUNDED * rounded * rounded;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let observation = self.now.rest_rate(record, to_b);

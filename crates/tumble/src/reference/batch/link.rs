@@ -1,9 +1,13 @@
 //! From one rest to the next: the rotation between them, and gravity on the way where the box stood on the table.
 
 use nalgebra::{DMatrix, DVector, UnitQuaternion, Vector3};
+use tumble_core::estimate::walk;
+use tumble_core::face::Face;
+use tumble_core::tape::Kind;
 
 use super::Setting;
 use super::unknowns::{GYRO, Globals, LEVER, Rest, Unknowns};
+use super::walked::{self, MeanNoise, Reading, Walked};
 use crate::reference::data::{Stretch, turned};
 use crate::reference::solve::Block;
 
@@ -22,6 +26,38 @@ struct Leg<'a> {
     force_density: f64,
     /// Intervals of one mean.
     group: usize,
+    /// The face it is made on, if it is known to stay in the table's plane.
+    plated: Option<Plated>,
+}
+
+/// A turn's plate: `docs/method.md`, "plate in a turn".
+#[derive(Clone, Copy)]
+struct Plated {
+    face: Face,
+    /// Unknowns of its wobble.
+    wobble: usize,
+    /// Of one component of a reading, rad².
+    variance: f64,
+}
+
+impl Leg<'_> {
+    /// The plate, in every third whole group.
+    fn plate(&self, group: usize, intervals: usize) -> Option<&Plated> {
+        let looked_at = (group + 1).is_multiple_of(usize::from(walk::PLATED)) && intervals == self.group;
+        self.plated.as_ref().filter(|_| looked_at)
+    }
+}
+
+impl Plated {
+    fn normal(&self) -> Vector3<f64> {
+        self.face.normal().cast()
+    }
+
+    /// What turns with the box, frame b.
+    fn leaning(&self, x: &[f64]) -> Vector3<f64> {
+        let plane = self.face.plane();
+        plane[0].cast() * x[self.wobble] + plane[1].cast() * x[self.wobble + 1]
+    }
 }
 
 /// The block of all residuals between two rests, whitened together: a mean of gravity and the attitude at the end share the
@@ -29,14 +65,23 @@ struct Leg<'a> {
 pub(super) fn link<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, from: Rest, to: Rest) -> Block<'a> {
     let stretches = &setting.stretches[from.stretch + 1..to.stretch];
     let duration_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
-    let legs: Vec<Leg> = stretches.iter().map(|stretch| leg(setting, unknowns, stretch, duration_s)).collect();
+    let mut face = setting.plate_known(from).then(|| setting.stretches[from.stretch].segment.face()).flatten();
+    let mut legs: Vec<Leg> = Vec::new();
+    for stretch in stretches {
+        face = face.filter(|_| matches!(stretch.segment.kind, Kind::OnTable { .. }));
+        let leg = leg(setting, unknowns, stretch, duration_s);
+        let plated = face.filter(|_| leg.pivot.is_some()).map(|face| plated(setting, unknowns, face, &leg));
+        legs.push(Leg { plated, ..leg });
+    }
     let gravity = f64::from(setting.conditions.gravity_mps2);
-    let covariance = covariance(&legs, gravity);
+    let covariance = covariance(&legs, gravity, setting.mean_noise);
     let whitener = covariance.cholesky().map(nalgebra::Cholesky::unpack);
     // All that is shared: both corrections and the lever.
     let depends = (GYRO..LEVER + 3).chain(from.all()).chain(to.all()).chain(from.earth..from.earth + 3);
+    let depends = depends.chain(from.table..from.table + 2);
+    let wobbles = legs.iter().filter_map(|leg| leg.plated).flat_map(|plate| plate.wobble..plate.wobble + 2);
     let pivots = legs.iter().filter_map(|leg| leg.pivot).flat_map(|first| first..first + 3);
-    let depends: Vec<usize> = depends.chain(pivots).collect();
+    let depends: Vec<usize> = depends.chain(pivots).chain(wobbles).collect();
     Block::new(depends, move |x| {
         let residual = residual(&legs, x, from, to, gravity, duration_s);
         let white = whitener.as_ref().and_then(|whitener| whitener.solve_lower_triangular(&residual));
@@ -57,50 +102,48 @@ fn leg<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, stretch: &'a Stretch,
         rate_density: f64::from(noise.rate_density) * scale + bridge,
         force_density: f64::from(noise.force_density * own.map_or(1.0, |own| own.force_scale)),
         group: ((GROUP_S / dt_s).round() as usize).max(1),
+        plated: None,
     }
 }
 
-/// Attitude noise walks: variance `v` where a group begins and `o` more in it give its mean `v + o/3`, against
-/// all that comes after `v + o/2`. Gravity sees it as `ε × g ẑ`.
-fn covariance(legs: &[Leg], gravity: f64) -> DMatrix<f64> {
-    // Per group: walk's variance of the mean, covariance with what is later, and the force's own.
-    let mut groups: Vec<(f64, f64, f64)> = Vec::new();
-    let mut walked = 0.0;
+/// What of a wobble does not turn with the box is coherent: its variance counts once for every reading of the turn (`walk.rs`).
+fn plated(setting: &Setting, unknowns: &mut Unknowns, face: Face, leg: &Leg) -> Plated {
+    let square = |sigma: f32| f64::from(sigma).powi(2);
+    let wobble = square(setting.noise.wobble_sigma_rad);
+    let coherent = square(setting.noise.rocking_sigma_rad) + f64::from(walk::UNSTEADY) * wobble;
+    let readings = leg.stretch.intervals.len() as f64 / (leg.group * usize::from(walk::PLATED)) as f64;
+    Plated {
+        face,
+        wobble: unknowns.add_with_prior(2, wobble.sqrt()),
+        variance: square(walk::WHITE) + coherent * readings.max(1.0),
+    }
+}
+
+/// Whose noise each residual of [`residual`] has: gravity sees the attitude's error as `ε × g ẑ`, the plate as `ε × ẑ`.
+fn covariance(legs: &[Leg], gravity: f64, kind: MeanNoise) -> DMatrix<f64> {
+    let (mut readings, mut groups, mut walked) = (Vec::new(), Vec::new(), 0.0);
     for leg in legs {
-        if leg.pivot.is_none() {
-            walked += leg.rate_density * leg.stretch.duration_s;
-            continue;
-        }
-        for group in leg.stretch.intervals.chunks(leg.group) {
+        for (number, group) in leg.stretch.intervals.chunks(leg.group).enumerate() {
             let seconds: f64 = group.iter().map(|interval| interval.dt_s).sum();
-            let own = leg.rate_density * seconds;
-            groups.push((walked + own / 3.0, walked + own / 2.0, leg.force_density / seconds));
+            let (here, own) = (groups.len(), leg.rate_density * seconds);
+            let mut read = |axis: Vector3<f64>, own: f64| readings.push(Reading { group: here, axis, own });
+            if leg.pivot.is_some() {
+                let axes = [Vector3::y() * gravity, Vector3::x() * -gravity, Vector3::zeros()];
+                axes.into_iter().for_each(|axis| read(axis, leg.force_density / seconds));
+            }
+            if let Some(plate) = leg.plate(number, group.len()) {
+                [Vector3::y(), -Vector3::x()].into_iter().for_each(|axis| read(axis, plate.variance));
+            }
+            groups.push(Walked { before: walked, own });
             walked += own;
         }
     }
-    let end = 3 * groups.len();
-    let mut matrix = DMatrix::zeros(end + 3, end + 3);
-    for (i, &(variance, later, force)) in groups.iter().enumerate() {
-        for axis in 0..3 {
-            matrix[(3 * i + axis, 3 * i + axis)] = force;
-        }
-        for j in i..groups.len() {
-            let shared = gravity * gravity * if i == j { variance } else { later };
-            for axis in 0..2 {
-                matrix[(3 * i + axis, 3 * j + axis)] += shared;
-                matrix[(3 * j + axis, 3 * i + axis)] = matrix[(3 * i + axis, 3 * j + axis)];
-            }
-        }
-        for (row, column, sign) in [(3 * i, end + 1, 1.0), (3 * i + 1, end, -1.0)] {
-            matrix[(row, column)] = sign * gravity * later;
-            matrix[(column, row)] = matrix[(row, column)];
-        }
-    }
-    (end..end + 3).for_each(|i| matrix[(i, i)] = walked);
-    matrix
+    let end = [Vector3::x(), Vector3::y(), Vector3::z()];
+    readings.extend(end.map(|axis| Reading { group: groups.len(), axis, own: 0.0 }));
+    walked::covariance(&readings, &groups, walked, kind)
 }
 
-/// Mean `R (A (f − a) − L l) − g ẑ` of every group, then `log(R₁ R₂ᵀ)` of the carried against the next rest's attitude.
+/// Of every group the mean of `R (A (f − a) − L l) − g ẑ` and, where the plate is looked at, of `(R n)ₓᵧ + (R w)ₓᵧ − p`, then `log(R₁ R₂ᵀ)` of the carried against the next rest's attitude.
 fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duration_s: f64) -> DVector<f64> {
     let (gyro, accel) = (Globals::gyro(x), Globals::accel(x));
     let biases = [from, to].map(|rest| rest.vector(x, rest.rate_bias()));
@@ -111,8 +154,8 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
     let mut residual = Vec::new();
     for leg in legs {
         let lever = leg.pivot.map(|pivot| common + from.vector(x, pivot));
-        for group in leg.stretch.intervals.chunks(leg.group) {
-            let (mut impulse, mut seconds) = (Vector3::zeros(), 0.0);
+        for (number, group) in leg.stretch.intervals.chunks(leg.group).enumerate() {
+            let (mut impulse, mut face, mut seconds) = (Vector3::zeros(), Vector3::zeros(), 0.0);
             for interval in group {
                 let dt_s = interval.dt_s;
                 let bias = biases[0] + (biases[1] - biases[0]) * ((since_s + 0.5 * dt_s) / duration_s);
@@ -120,9 +163,9 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
                 let turn = turned(&a, &b, dt_s);
                 let earth = UnitQuaternion::from_scaled_axis(earth * -dt_s);
                 if let Some(lever) = &lever {
-                    let (rate, slope) = (gyro * (interval.smooth_rate - bias), gyro * interval.slope);
-                    let swung = rate.cross(&rate.cross(lever)) + slope.cross(lever);
                     let middle = rotation * turn.powf(0.5);
+                    face += leg.plated.map_or_else(Vector3::zeros, |plate| middle * plate.normal()) * dt_s;
+                    let swung = swung(lever, &(gyro * (interval.smooth_rate - bias)), &(gyro * interval.slope));
                     impulse += middle * (accel * (interval.force - force_bias) - swung) * dt_s;
                 }
                 rotation = earth * rotation * turn;
@@ -132,8 +175,17 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
             if lever.is_some() {
                 residual.extend_from_slice((impulse / seconds - Vector3::z() * gravity).as_slice());
             }
+            if let Some(plate) = leg.plate(number, group.len()) {
+                let wobbling = face / seconds + rotation * plate.leaning(x);
+                residual.extend((0..2).map(|axis| wobbling[axis] - x[from.table + axis]));
+            }
         }
     }
     residual.extend_from_slice((rotation * to.rotation(x).inverse()).scaled_axis().as_slice());
     DVector::from_vec(residual)
+}
+
+/// Acceleration of a point that turns about another, `ω × (ω × l) + ω̇ × l`.
+fn swung(lever: &Vector3<f64>, rate: &Vector3<f64>, slope: &Vector3<f64>) -> Vector3<f64> {
+    rate.cross(&rate.cross(lever)) + slope.cross(lever)
 }

@@ -1,21 +1,27 @@
 //! The full maximum a posteriori problem of `docs/method.md` §4 in one piece, `f64`, from the samples.
 //!
 //! Unknown are both corrections, the lever, for every rest its attitude and both biases (random walks between rests), for
-//! every turn its pivot, for every visit of a face its facet and its first stop's error, for every unbroken chain of segments
+//! every turn its pivot, for every turn its wobble, every visit of a face its facet and its first stop's error, for every unbroken chain of segments
 //! the table and the Earth's rate. Rotation between rests is integrated anew from the samples at every step of the
 //! solver, so nothing is linearised that the solver does not linearise. Noise is what the device found: the two are to
 //! agree on the data, not on what noise is. What they still do differently: the device averages a twelfth of a second into
-//! a record of 16-bit numbers, and takes a group's process noise as there from its beginning, where here a group's mean sees
-//! the exact share of it; a rest in the hand is carried by the gyroscope there and taken as one attitude here.
+//! a record of 16-bit numbers, and takes a group's process noise as there from its beginning ([`MeanNoise::Lumped`]), where here a
+//! group's mean may see the exact share of it; a rest in the hand is carried by the gyroscope there and taken as one attitude here.
 
 mod link;
 mod unknowns;
 mod visits;
+mod walked;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Frame};
+use tumble_core::estimate::facets::{LEANING, SQUARE};
 use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, PARAMETERS, noise};
+use tumble_core::face::FaceSet;
+use tumble_core::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2};
+
+pub use walked::MeanNoise;
 
 use super::data::Stretch;
 use super::gravity::Fitted;
@@ -50,6 +56,17 @@ pub(crate) struct Setting<'a> {
     pub conditions: &'a Conditions,
     pub noise: &'a noise::Noise,
     pub segments: &'a [SegmentNoise],
+    pub mean_noise: MeanNoise,
+}
+
+impl Setting<'_> {
+    /// Is the plate believed in the turns that follow a rest? As on the device: of a box found square, three faces seen.
+    fn plate_known(&self, rest: Rest) -> bool {
+        let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.segment.face());
+        let seen = faces.fold(FaceSet::EMPTY, FaceSet::with);
+        let leaning = rest.leaning(self.stretches[rest.stretch].segment.face());
+        self.noise.facet_sigma_rad == Some(SQUARE) && seen.len() >= 3 && leaning < LEANING
+    }
 }
 
 /// Starts where the device ended. None without rests, or if the problem is singular.
@@ -58,8 +75,9 @@ pub fn estimate(
     conditions: &Conditions,
     device: &Estimate,
     segments: &[SegmentNoise],
+    mean_noise: MeanNoise,
 ) -> Option<Batch> {
-    let setting = Setting { stretches, conditions, noise: &device.noise, segments };
+    let setting = Setting { stretches, conditions, noise: &device.noise, segments, mean_noise };
     let mut unknowns = Unknowns::new(&device.calibration);
     let rests = unknowns.place(&setting);
     let last = *rests.last()?;
@@ -133,7 +151,10 @@ fn priors<'a>(unknowns: &Unknowns, start: &Calibration, rests: &[Rest]) -> Vec<B
 fn still<'a>(setting: &Setting<'a>, rest: Rest) -> Vec<Block<'a>> {
     let stretch = &setting.stretches[rest.stretch];
     let scale = f64::from(setting.segments.get(stretch.number).map_or(1.0, |noise| noise.force_scale));
-    let force_sigma = (f64::from(setting.noise.force_density) * scale / stretch.duration_s).sqrt();
+    // The device takes in the rest's records one by one, each with its rounding.
+    let rounded = |unit: f32| f64::from(unit * unit * noise::ROUNDED * noise::REST_RECORD_S) / stretch.duration_s;
+    let force_variance = f64::from(setting.noise.force_density) * scale / stretch.duration_s;
+    let force_sigma = (force_variance + rounded(FORCE_UNIT_MPS2)).sqrt();
     let gravity = Vector3::new(0.0, 0.0, f64::from(setting.conditions.gravity_mps2));
     let unknowns = (ACCEL..ACCEL + 9).chain(rest.all());
     let mut blocks = vec![Block::new(unknowns, move |x| {
@@ -141,7 +162,8 @@ fn still<'a>(setting: &Setting<'a>, rest: Rest) -> Vec<Block<'a>> {
         ((force - gravity) / force_sigma).iter().copied().collect()
     })];
     if noise::is_solid(&stretch.segment, setting.noise.quiet_variance) {
-        let rate_sigma = (f64::from(setting.noise.rate_density) / stretch.duration_s).sqrt();
+        let rate_variance = f64::from(setting.noise.rate_density) / stretch.duration_s;
+        let rate_sigma = (rate_variance + rounded(ANGLE_UNIT_RAD / noise::REST_RECORD_S)).sqrt();
         let unknowns = (GYRO..GYRO + 9).chain(rest.all()).chain(rest.earth..rest.earth + 3);
         blocks.push(Block::new(unknowns, move |x| {
             let rate = Globals::gyro(x) * (stretch.mean_rate - rest.vector(x, rest.rate_bias()));

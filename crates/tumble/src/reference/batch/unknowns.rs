@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use tumble_core::calibration::Calibration;
+use tumble_core::face::Face;
 
 use super::Setting;
 use crate::reference::data::{Stretch, turned};
@@ -66,6 +67,11 @@ impl Rest {
 
     pub fn vector(self, x: &[f64], first: usize) -> Vector3<f64> {
         Vector3::from_column_slice(&x[first..first + 3])
+    }
+
+    /// How far a face's normal lies from the vertical, 1; of no face infinitely far.
+    pub fn leaning(self, face: Option<Face>) -> f32 {
+        face.map_or(f32::INFINITY, |face| (self.nominal * face.normal().cast::<f64>()).xy().norm() as f32)
     }
 
     /// `exp(x) · nominal`.

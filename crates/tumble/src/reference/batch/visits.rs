@@ -11,7 +11,7 @@ use super::unknowns::{Rest, Unknowns};
 use crate::reference::solve::Block;
 
 /// How well a face's contact with the table repeats, rad: the device's.
-const CONTACT_SIGMA: f64 = 20e-6;
+const CONTACT_SIGMA: f64 = 5e-6;
 
 /// A stay on one face.
 struct Visit {
