@@ -106,10 +106,9 @@ fn scatter(blocks: &[Option<Blocks>]) -> Option<Six> {
 /// New ends of a rest; the last sample of a stretch is the first of the next.
 fn trim(stretches: &mut [Stretch], k: usize, start: usize, end: Option<usize>) {
     let old = stretches[k].samples.clone();
-    if let Some(before) = k.checked_sub(1).and_then(|before| stretches.get_mut(before)) {
-        if before.samples.end == old.start + 1 {
-            before.samples.end = start + 1;
-        }
+    let before = k.checked_sub(1).and_then(|before| stretches.get_mut(before));
+    if let Some(before) = before.filter(|before| before.samples.end == old.start + 1) {
+        before.samples.end = start + 1;
     }
     stretches[k].samples.start = start;
     if let Some(end) = end {
