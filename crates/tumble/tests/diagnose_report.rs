@@ -26,6 +26,7 @@ fn found(id: &str, rest: &[&str]) -> Found {
         evidence: 494.2,
         runner_up: Some(RunnerUp { id: "gyro_bias_random_walk".into(), gap: 148.0 }),
         tied_with: rest.iter().map(|id| (*id).to_owned()).collect(),
+        tied_with_shapes: Vec::new(),
         separate_by: "rest on both faces of every axis, and come back to the first. ".repeat(6),
         parameters: (0..9).map(value).collect(),
         place: place(),

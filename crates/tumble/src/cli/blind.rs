@@ -60,6 +60,9 @@ pub(super) struct Arguments {
     /// Diagnose again what is answered in DIR: by another build. Sizes stay, as the clean twins stay
     #[arg(long, requires = "output")]
     again: bool,
+    /// Score what is answered in DIR so far, by this or another process, and ask nothing more
+    #[arg(long, requires = "output", conflicts_with = "again")]
+    partial: bool,
     /// Size of an effect, in detection limits of its clean twin
     #[arg(long, value_name = "FACTOR", default_value_t = 2.0, value_parser = positive)]
     at: f64,
@@ -105,6 +108,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
         folder: arguments.output.clone(),
         keep: !arguments.answers_only,
         again: arguments.again,
+        partial: arguments.partial,
         at: arguments.at,
         noise: arguments.noise,
         patience_s: arguments.patience,

@@ -78,6 +78,9 @@ pub struct Found {
     pub runner_up: Option<RunnerUp>,
     /// What explains as much.
     pub tied_with: Vec<String>,
+    /// Shapes without a name that explain as much: of time, heading, or what was before. Left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tied_with_shapes: Vec<String>,
     /// The experiment that would tell them apart.
     pub separate_by: String,
     /// With sigmas.

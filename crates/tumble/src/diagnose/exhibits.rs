@@ -1,6 +1,6 @@
 //! What the report's pictures are drawn from.
 
-use super::findings::Finding;
+use super::findings::{Finding, TIE};
 use super::held_out;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
@@ -99,20 +99,35 @@ pub fn exhibits(
 
 /// What the leftover follows, in words.
 pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
-    leftover
+    leftover.ranking.iter().take(8).map(|(family, members, gain)| (shape(bench, *family, members), *gain)).collect()
+}
+
+/// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
+/// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
+pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<String> {
+    const FAMILIES: [&str; 6] =
+        ["time", "slow oscillation", "heading", "the face before", "memory of motion", "memory of force"];
+    let mut tied: Vec<_> = instead
         .ranking
         .iter()
-        .take(8)
-        .map(|(family, members, gain)| {
-            let family = &bench.families[*family].0;
-            let mut shapes: Vec<&str> = members.iter().map(|member| family.members[*member].1.as_str()).collect();
-            let mut seen = std::collections::BTreeSet::new();
-            shapes.retain(|shape| seen.insert(*shape));
-            shapes.truncate(3);
-            let triad = if family.gyro { "gyroscope" } else { "accelerometer" };
-            (format!("{}: {} ({})", family.name, shapes.join(", "), triad), *gain)
+        .chain(&instead.aliases)
+        .filter(|(family, _, gain)| {
+            FAMILIES.contains(&bench.families[*family].0.name.as_str()) && instead.base + gain > evidence - TIE
         })
-        .collect()
+        .collect();
+    tied.sort_by(|a, b| b.2.total_cmp(&a.2));
+    tied.into_iter().take(3).map(|(family, members, _)| shape(bench, *family, members)).collect()
+}
+
+/// A block in words.
+fn shape(bench: &Bench, family: usize, members: &[usize]) -> String {
+    let family = &bench.families[family].0;
+    let mut shapes: Vec<&str> = members.iter().map(|member| family.members[*member].1.as_str()).collect();
+    let mut seen = std::collections::BTreeSet::new();
+    shapes.retain(|shape| seen.insert(*shape));
+    shapes.truncate(3);
+    let triad = if family.gyro { "gyroscope" } else { "accelerometer" };
+    format!("{}: {} ({})", family.name, shapes.join(", "), triad)
 }
 
 fn segments(bench: &Bench, origin_s: f64) -> Vec<Segment> {

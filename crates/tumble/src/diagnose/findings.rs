@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::catalogue::Parameter;
 use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp, Value};
 use super::held_out;
 use super::search::bench::Bench;
@@ -71,6 +72,7 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
         evidence,
         runner_up,
         tied_with,
+        tied_with_shapes: Vec::new(),
         separate_by: card.separate_by.into(),
         parameters,
         place,
@@ -160,17 +162,19 @@ pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (V
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let accepted = &bench.accepted[k];
     let placed = &bench.candidates[accepted.candidate].variants[accepted.variant];
-    let mut values: Vec<Value> = placed
-        .parameters
-        .iter()
-        .enumerate()
-        .map(|(i, parameter)| Value {
-            name: parameter.name.clone(),
-            value: total[i],
-            sigma: fit.covariance[(before + i, before + i)].sqrt(),
-            unit: parameter.unit.into(),
-        })
-        .collect();
+    let count = placed.parameters.len();
+    let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
+    let (own, covariance) = match &placed.own {
+        Some(own) => (own * &total, own * covariance * own.transpose()),
+        None => (total.clone(), covariance),
+    };
+    let value = |(i, parameter): (usize, &Parameter)| Value {
+        name: parameter.name.clone(),
+        value: own[i],
+        sigma: covariance[(i, i)].sqrt(),
+        unit: parameter.unit.into(),
+    };
+    let mut values: Vec<Value> = placed.parameters.iter().enumerate().map(value).collect();
     if let Some((name, value, unit)) = placed.setting {
         let sigma = setting_sigma(bench, ledger, k);
         values.push(Value { name: name.into(), value, sigma, unit: unit.into() });

@@ -5,6 +5,7 @@ use tumble_core::tape::Segment;
 
 use super::twin::Twin;
 use super::twin::data::{Raw, stretches};
+use super::twin::edges;
 use super::twin::noise::Noise;
 use super::twin::trajectory::Nominal;
 use crate::calibrate::{self, Session};
@@ -67,6 +68,7 @@ pub fn prepare_samples(
         }
     };
     let mut stretches = stretches(tape.segments(), &samples, &device_noise);
+    edges::refine(&mut stretches, &samples);
     for stretch in stretches.iter_mut().filter(|stretch| masked.contains(&stretch.number)) {
         (stretch.broken, stretch.excluded) = (true, true);
     }

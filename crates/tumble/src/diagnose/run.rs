@@ -6,9 +6,10 @@ use tumble_core::procedure::BoxFaces;
 
 use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
 use super::exhibits::{self, Exhibits};
-use super::findings::{self, Finding, TIE};
+use super::findings;
 use super::gates::Gated;
 use super::intake::{Intake, intake};
+use super::judge::{Judged, judge};
 use super::limits;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
@@ -21,14 +22,8 @@ const LEAST_POSES: usize = 4;
 /// Directions of gravity less than this apart are one pose, rad (30°).
 const POSE_RAD: f64 = 0.52;
 
-/// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
-const BEYOND_UNKNOWN: f64 = 0.5;
-
 /// Found by gates, and yet no distortion of the samples: the physics is to be searched as ever.
 const HARMLESS: [&str; 4] = ["vibration_line", "table_rocking", "spin_axis_wobble", "incomplete_turn"];
-
-/// ln of the odds that a name needs beside a distortion of the samples: 5e8 to 1.
-const BESIDE_GATES: f64 = 20.0;
 
 /// What may be asked for.
 #[derive(Clone, Debug, Default)]
@@ -80,98 +75,12 @@ pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progres
     }
     progress("report", 0.95);
     let exhibits = exhibits::exhibits(&bench, &selection, &judged.named, &leftover, origin_s);
-    let diagnosis = assemble(&bench, &selection, &leftover, judged, gated, conditions, origin_s);
+    let diagnosis = assemble(&mut bench, &selection, &leftover, judged, gated, conditions, origin_s);
     Outcome { diagnosis, exhibits: Some(exhibits) }
 }
 
-/// What of the accepted keeps its name.
-struct Judged {
-    named: Vec<Finding>,
-    demoted: Vec<Finding>,
-    unknown: bool,
-    /// What improves only on the data it was fitted to.
-    dropped: Vec<String>,
-    /// Is something left that a distortion of the samples accounts for?
-    traces: bool,
-    /// Shapes that explain better than a name did.
-    better: Vec<(String, f64)>,
-    p_value: f64,
-}
-
-impl Judged {
-    /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
-    /// odds that no trace would reach; a bias that wanders is none.
-    fn beside_gates(&mut self) {
-        if self.unknown {
-            self.traces = true;
-        }
-        self.unknown = false;
-        let (named, dropped): (Vec<_>, Vec<_>) = std::mem::take(&mut self.named)
-            .into_iter()
-            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.found.id.ends_with("_random_walk"));
-        self.named = named;
-        self.traces |= !dropped.is_empty();
-    }
-}
-
-/// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
-fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
-    let mut judged = Judged {
-        named: Vec::new(),
-        demoted: Vec::new(),
-        unknown: leftover.is_real(),
-        dropped: Vec::new(),
-        traces: false,
-        better: Vec::new(),
-        p_value: leftover.p_value(),
-    };
-    for finding in found {
-        let id = finding.found.id.as_str();
-        let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
-            continue;
-        };
-        if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
-            judged.dropped.push(finding.found.id.clone());
-            continue;
-        }
-        let shape = shape_instead(bench, selection, k);
-        let clear = selection.evidence - (shape.base + shape.evidence);
-        // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
-        let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
-        if clear < -TIE {
-            judged.unknown = true;
-            judged.p_value = judged.p_value.min((clear).exp());
-            judged.better.extend(exhibits::correlates(bench, &shape));
-            judged.demoted.push(finding);
-        } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
-            judged.demoted.push(finding);
-        } else {
-            judged.named.push(finding);
-        }
-    }
-    judged
-}
-
-/// The best that shapes without a name do in the place of an accepted effect, at its noise and at the null's.
-fn shape_instead(bench: &mut Bench, selection: &Selection, k: usize) -> Leftover {
-    let noise = bench.twin.noise;
-    let walks = bench.candidates[bench.accepted[k].candidate].walk.is_some();
-    let mut best: Option<Leftover> = None;
-    for noise in
-        [selection.null_noise, noise].into_iter().take(if walks || noise == selection.null_noise { 1 } else { 2 })
-    {
-        bench.twin.noise = noise;
-        let shape = unknown::weigh(bench, Some(k));
-        if best.as_ref().is_none_or(|best| shape.base + shape.evidence > best.base + best.evidence) {
-            best = Some(shape);
-        }
-    }
-    bench.twin.noise = noise;
-    best.unwrap_or_else(|| unknown::weigh(bench, Some(k)))
-}
-
 fn assemble(
-    bench: &Bench,
+    bench: &mut Bench,
     selection: &Selection,
     leftover: &Leftover,
     judged: Judged,

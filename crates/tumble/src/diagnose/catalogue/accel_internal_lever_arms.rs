@@ -1,6 +1,9 @@
 //! The accelerometer's three axes sense at different points of the chip: `f_i += (ω × (ω × l_i) + ω̇ × l_i)_i`.
+//!
+//! What the three places have in common is a lever arm, which every recording has and which the filter carries with a prior of
+//! its own: of the nine numbers six are this effect's. Reported is each place less the mean of the three, `l_i − l̄`.
 
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, Vector3};
 
 use super::{AXES, Card, Effect, Model, Variant, parameter, reading};
 use crate::diagnose::twin::Twin;
@@ -32,5 +35,15 @@ fn model(_: &Twin) -> Model {
         setting: None,
         parameters: pairs().map(|(i, j)| parameter(format!("{}_at_{}", AXES[i], AXES[j]), "mm", 3.0)).collect(),
         influences: pairs().map(|(i, j)| push(i, j)).collect(),
+        own: Some(less_the_mean()),
+        at_size: None,
     }])
+}
+
+/// `l_i − l̄`, for numbers in the order xx, xy, xz, yx, …
+fn less_the_mean() -> DMatrix<f64> {
+    DMatrix::from_fn(9, 9, |a, b| {
+        let own = if a == b { 1.0 } else { 0.0 };
+        own - if a % 3 == b % 3 { 1.0 / 3.0 } else { 0.0 }
+    })
 }

@@ -29,5 +29,7 @@ fn model(twin: &Twin) -> Model {
         setting: None,
         parameters: AXES.iter().map(|axis| parameter(*axis, "cm", 3.0)).collect(),
         influences: (0..3).map(|axis| Influence::Lever(axis, 0.01)).collect(),
+        own: None,
+        at_size: None,
     }])
 }

@@ -22,5 +22,7 @@ fn model(_: &Twin) -> Model {
         setting: None,
         parameters: AXES.iter().map(|axis| parameter(format!("n_{axis}"), "deg/h", 60.0)).collect(),
         influences: (0..3).map(|axis| Influence::Earth(axis, DPS / 3600.0)).collect(),
+        own: None,
+        at_size: None,
     }])
 }

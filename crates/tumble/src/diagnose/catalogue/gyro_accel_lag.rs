@@ -22,5 +22,7 @@ fn model(_: &Twin) -> Model {
         setting: None,
         parameters: vec![parameter("accelerometer_after_gyroscope", "ms", 5.0)],
         influences: vec![reading(|moment| Push::force(moment.jerk * -1e-3))],
+        own: None,
+        at_size: None,
     }])
 }

@@ -27,5 +27,7 @@ fn model(_: &Twin) -> Model {
         influences: pairs()
             .map(|(i, j)| reading(move |moment| Push::rate(Vector3::ith(i, DPS / G * moment.force[j]))))
             .collect(),
+        own: None,
+        at_size: None,
     }])
 }

@@ -33,6 +33,8 @@ fn model(_: &Twin) -> Model {
             .map(|(i, j)| parameter(format!("{}_per_{}_squared", AXES[i], AXES[j]), "dps/g^2", 0.05))
             .collect(),
         influences: pairs().map(|(i, j)| squared(i, j)).collect(),
+        own: None,
+        at_size: None,
     };
     Model::Shift(vec![own, all])
 }

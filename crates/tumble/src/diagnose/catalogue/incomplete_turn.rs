@@ -27,6 +27,8 @@ fn model(twin: &Twin) -> Model {
         setting,
         parameters: vec![parameter("missing", "deg", 3.0)],
         influences: vec![Influence::Stop(turns)],
+        own: None,
+        at_size: None,
     };
     let at = |turn: &Stretch| Some(("at", twin.samples[turn.samples.end - 1].t_s, "s"));
     let mut variants = Vec::new();

@@ -25,7 +25,9 @@ mod gyro_warm_up;
 mod incomplete_turn;
 mod platform_tilt_change;
 
-use nalgebra::Vector3;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, Vector3};
 
 use super::twin::Twin;
 use super::twin::influence::{Influence, Push, Reading};
@@ -76,7 +78,14 @@ pub struct Variant {
     pub parameters: Vec<Parameter>,
     /// Per unit.
     pub influences: Vec<Influence>,
+    /// Of the numbers, which combinations are its own; none: the numbers themselves.
+    pub own: Option<DMatrix<f64>>,
+    /// What a parameter (by its place) does at a size, per unit of it; none: the same at any size.
+    pub at_size: Option<AtSize>,
 }
+
+/// See [`Variant::at_size`].
+pub type AtSize = Arc<dyn Fn(usize, f64) -> Influence + Send + Sync>;
 
 /// How an effect enters the model.
 pub enum Model {
@@ -186,6 +195,8 @@ fn axes(
         setting: None,
         parameters: AXES.iter().map(|axis| parameter(*axis, unit, width)).collect(),
         influences: (0..3).map(|axis| reading(move |moment| push(axis, moment))).collect(),
+        own: None,
+        at_size: None,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Card, DPS, Effect, Model, Variant, parameter};
 use crate::diagnose::twin::Twin;
-use crate::diagnose::twin::data::Deed;
+use crate::diagnose::twin::data::{Deed, Stretch};
 use crate::diagnose::twin::influence::Influence;
 
 const CARD: Card = Card {
@@ -24,12 +24,23 @@ fn model(twin: &Twin) -> Model {
             "the box is not known to be square, so faces say nothing of the table: state `box: square` if it is",
         );
     }
-    // Between two rests on the table: where a motion begins.
-    let times = twin.stretches.iter().filter(|stretch| matches!(stretch.deed, Deed::Move | Deed::Turn { .. }));
-    let variant = |from_s: f64| Variant {
-        setting: Some(("at", from_s, "s")),
+    let begins = |stretch: &Stretch| twin.samples[stretch.samples.start].t_s;
+    let variants = twin.stretches.iter().enumerate().filter(|(_, s)| matches!(s.deed, Deed::Move | Deed::Turn { .. }));
+    let variants = variants.map(|(k, stretch)| {
+        // The table is seen at the end of each rest: when it gave way between two of them, nothing tells.
+        let seen = twin.stretches[k..].iter().find(|stretch| stretch.is_rest());
+        let until_s = seen.map_or(begins(stretch), |rest| twin.samples[rest.samples.end - 1].t_s);
+        variant(begins(stretch), 0.5 * (begins(stretch) + until_s))
+    });
+    Model::Shift(variants.collect())
+}
+
+fn variant(from_s: f64, at_s: f64) -> Variant {
+    Variant {
+        setting: Some(("at", at_s, "s")),
         parameters: vec![parameter("east", "deg", 0.5), parameter("north", "deg", 0.5)],
         influences: (0..2).map(|axis| Influence::Table(from_s, axis, DPS)).collect(),
-    };
-    Model::Shift(times.map(|stretch| variant(twin.samples[stretch.samples.start].t_s)).collect())
+        own: None,
+        at_size: None,
+    }
 }

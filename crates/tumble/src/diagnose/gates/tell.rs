@@ -25,6 +25,7 @@ pub fn found(card: &Card, evidence: f64, parameters: Vec<Value>, place: Place) -
         evidence,
         runner_up: None,
         tied_with: Vec::new(),
+        tied_with_shapes: Vec::new(),
         separate_by: card.separate_by.into(),
         parameters,
         place,

@@ -199,12 +199,13 @@ pub fn elsewhere(other: &OtherRecording) -> String {
 
 /// What it is hard to tell from, and the experiment.
 pub fn ties(found: &Found) -> Option<String> {
-    if found.tied_with.is_empty() {
+    let others: Vec<&str> = found.tied_with.iter().chain(&found.tied_with_shapes).map(String::as_str).collect();
+    if others.is_empty() {
         return None;
     }
     Some(format!(
         "This recording explains it as well by {}. To tell them apart: {}.",
-        found.tied_with.join(", "),
+        others.join(", "),
         found.separate_by.trim_end_matches('.')
     ))
 }

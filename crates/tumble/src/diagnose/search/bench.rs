@@ -2,9 +2,11 @@
 
 use std::ops::Range;
 
+use nalgebra::DMatrix;
+
 use super::generic::{Family, families};
 use super::ledger::{Fit, Ledger, Term, log_mean};
-use crate::diagnose::catalogue::{Effect, Model, Parameter, STRUCTURAL};
+use crate::diagnose::catalogue::{AtSize, Effect, Model, Parameter, STRUCTURAL};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Raw;
 use crate::diagnose::twin::influence::Influence;
@@ -22,7 +24,7 @@ pub const WANDERING: [f64; 6] = [400.0, 1600.0, 6400.0, 25_600.0, 102_400.0, 409
 pub const WIDENINGS: [f64; 3] = [1.0, 4.0, 16.0];
 
 /// A variant with its place among the columns.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Placed {
     /// What is held.
     pub setting: Option<(&'static str, f64, &'static str)>,
@@ -30,6 +32,10 @@ pub struct Placed {
     pub parameters: Vec<Parameter>,
     /// Its columns.
     pub columns: Range<usize>,
+    /// Combinations that are its own.
+    pub own: Option<DMatrix<f64>>,
+    /// Influences at a size.
+    pub at_size: Option<AtSize>,
 }
 
 /// A candidate.
@@ -99,6 +105,8 @@ impl Bench {
                             setting: variant.setting,
                             parameters: variant.parameters,
                             columns: place(variant.influences),
+                            own: variant.own,
+                            at_size: variant.at_size,
                         })
                         .collect();
                 }
@@ -206,8 +214,20 @@ impl Bench {
                     next += 1;
                 }
             }
+            self.resize();
             self.take_out(&self.taken());
             self.fit_nominal();
+        }
+    }
+
+    /// Influences that depend on the effect's size, at the sizes taken.
+    fn resize(&mut self) {
+        for accepted in &self.accepted {
+            let Some(placed) = self.candidates[accepted.candidate].variants.get(accepted.variant) else { continue };
+            let Some(at_size) = &placed.at_size else { continue };
+            for (i, column) in placed.columns.clone().enumerate() {
+                self.influences[column] = at_size(i, accepted.taken[i]);
+            }
         }
     }
 

@@ -54,6 +54,7 @@ pub fn families(twin: &Twin) -> Vec<Family> {
     }
     families.push(previous_face(twin));
     families.extend([true, false].map(|gyro| memory_of_motion(twin, gyro)));
+    families.extend([true, false].map(|gyro| memory_of_force(twin, gyro)));
     families
 }
 
@@ -80,11 +81,36 @@ fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
             shapes.push((format!("memory of {name} over {tau_s} s"), std::sync::Arc::new(filtered)));
         }
     }
+    remembered("memory of motion", gyro, &shapes)
+}
+
+/// Readings that come late in part, as of a body that creeps: `ṡ = (f − s)/τ`, settled at the start.
+fn memory_of_force(twin: &Twin, gyro: bool) -> Family {
+    let mut shapes: Vec<(String, std::sync::Arc<Vec<f64>>)> = Vec::new();
+    for tau_s in [3.0, 12.0, 50.0] {
+        for (axis, letter) in AXES.iter().enumerate() {
+            let (mut settled, mut last_s) = (None, 0.0);
+            let filtered = twin.trajectory.moments.iter().map(|moment| {
+                let force = moment.force[axis] / G;
+                let keep = (-(moment.t_s - last_s) / tau_s).exp();
+                last_s = moment.t_s;
+                let value = force + (settled.unwrap_or(force) - force) * keep;
+                settled = Some(value);
+                value
+            });
+            shapes.push((format!("memory of f_{letter} over {tau_s} s"), std::sync::Arc::new(filtered.collect())));
+        }
+    }
+    remembered("memory of force", gyro, &shapes)
+}
+
+/// Each shape, a value a sample, on each channel of a triad.
+fn remembered(name: &str, gyro: bool, shapes: &[(String, std::sync::Arc<Vec<f64>>)]) -> Family {
     let first = if gyro { 0 } else { 3 };
     let unit = if gyro { DPS } else { 1e-3 * G };
     let (mut members, mut influences) = (Vec::new(), Vec::new());
     for channel in first..first + 3 {
-        for (what, values) in &shapes {
+        for (what, values) in shapes {
             let values = values.clone();
             members.push((channel, what.clone()));
             influences.push(reading(move |moment| {
@@ -92,7 +118,7 @@ fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
             }));
         }
     }
-    Family { name: "memory of motion".into(), gyro, members, influences }
+    Family { name: name.into(), gyro, members, influences }
 }
 
 fn family(name: &str, gyro: bool, shapes: impl Fn() -> Shapes) -> Family {

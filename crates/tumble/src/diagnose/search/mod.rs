@@ -6,3 +6,4 @@ pub mod ledger;
 pub mod null;
 pub mod select;
 pub mod unknown;
+pub mod wandering;

@@ -45,7 +45,7 @@ pub struct Selection {
 }
 
 /// The null's noise: how much the biases wander, as far as healthy ones do, by evidence.
-fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
+pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
     let terms = bench.accepted_terms(None);
     let given = bench.given;
     let mut best = (given, f64::NEG_INFINITY);
@@ -89,6 +89,16 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
     let null_scales = Ledger::new(&before, |_| true).fit(&[]).scales;
     progress("what chance does", 0.2);
     let threshold = null::threshold(bench, &before, &null_scales, seed);
+    let first = forward(bench, threshold, progress);
+    challenge_walks(bench, threshold, progress);
+    prune(bench, threshold);
+    let (noise, evidence) = settle_walks(bench);
+    let after = bench.rows(noise);
+    Selection { threshold, first, before, null_scales, null_noise, after, evidence }
+}
+
+/// Takes in the best, one after the other, while it pays; the scores of the first round.
+fn forward(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&str, f32)) -> Vec<Score> {
     let mut first = Vec::new();
     for round in 0..=MOST_EFFECTS {
         progress("candidates", 0.3 + 0.1 * round as f32);
@@ -96,14 +106,41 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
         if round == 0 {
             first.clone_from(&scores);
         }
-        let Some(best) = scores.first().filter(|best| best.gain > threshold && round < MOST_EFFECTS) else { break };
+        let room = bench.accepted.len() < MOST_EFFECTS && round < MOST_EFFECTS;
+        let Some(best) = scores.first().filter(|best| best.gain > threshold && room) else { break };
         if accept(bench, best, threshold) {
             prune(bench, threshold);
         }
     }
-    let (noise, evidence) = settle_walks(bench);
-    let after = bench.rows(noise);
-    Selection { threshold, first, before, null_scales, null_noise, after, evidence }
+    first
+}
+
+/// A walk can stand for two effects at once, and then leaves neither anything to explain: the search once more without walks.
+/// Names that explain more by the odds that each further one needs take the walk's place.
+fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&str, f32)) {
+    if !bench.accepted.iter().any(|accepted| bench.candidates[accepted.candidate].walk.is_some()) {
+        return;
+    }
+    let evidence = settle_walks(bench).1;
+    let kept = (bench.accepted.clone(), bench.wander);
+    let known: Vec<_> = bench.candidates.iter().map(|c| (c.variants.clone(), c.walk, c.absent)).collect();
+    bench.candidates.iter_mut().for_each(|candidate| candidate.walk = None);
+    bench.accepted.clear();
+    bench.take_out(&[]);
+    bench.fit_nominal();
+    forward(bench, threshold, progress);
+    let more = bench.accepted.len().saturating_sub(kept.0.len());
+    let better = settle_walks(bench).1 > evidence + threshold * more as f64;
+    for (candidate, (variants, walk, absent)) in bench.candidates.iter_mut().zip(known) {
+        (candidate.variants, candidate.walk, candidate.absent) = (variants, walk, absent);
+    }
+    if better && !bench.accepted.is_empty() {
+        // A walk may yet be there beside them.
+        forward(bench, threshold, progress);
+    } else {
+        (bench.accepted, bench.wander) = kept;
+        bench.refit();
+    }
 }
 
 /// Takes a candidate in, unless its non-linear refit does not hold what the linear score promised, or its numbers have no

@@ -39,6 +39,8 @@ pub struct Leftover {
     pub members: Vec<usize>,
     /// All blocks by their gain: (family, members, gain), best first.
     pub ranking: Vec<(usize, Vec<usize>, f64)>,
+    /// Blocks left out as aliases of the effect in whose place they were weighed: (family, members, gain).
+    pub aliases: Vec<(usize, Vec<usize>, f64)>,
     /// Of the signal, by row.
     pub signal: Vec<f64>,
     /// The rows that it was found in.
@@ -112,7 +114,7 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
     let whole = ledger.fit(&terms);
     // Columns of the effect itself among the given: its put-back terms stand last.
     let own: Vec<usize> = (given - own.len().min(given)..given).collect();
-    let (mut all, mut ranking) = (Vec::new(), Vec::new());
+    let (mut all, mut ranking, mut aliases) = (Vec::new(), Vec::new(), Vec::new());
     let mut best: Option<(f64, Block, Vec<Term>, Fit)> = None;
     for block in blocks(bench) {
         let start = bench.families[block.family].1.start;
@@ -136,6 +138,7 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
         }
         let Some((gain, model, fit)) = strongest else { continue };
         if !own.is_empty() && is_alias(&ledger, &fit, &model[given..], given, &own) {
+            aliases.push((block.family, block.members.clone(), gain));
             continue;
         }
         all.push(log_mean(&gains));
@@ -155,6 +158,7 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
             family: 0,
             members: Vec::new(),
             ranking,
+            aliases,
             signal,
             rows,
         };
@@ -172,6 +176,7 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
         family: block.family,
         members: block.members,
         ranking,
+        aliases,
         signal,
         rows,
     }

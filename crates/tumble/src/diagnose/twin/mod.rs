@@ -6,6 +6,7 @@
 //! candidate effect of size θ shifts them by `responses · θ`. That makes every test a linear regression.
 
 pub mod data;
+pub mod edges;
 pub mod influence;
 pub mod noise;
 pub mod rows;

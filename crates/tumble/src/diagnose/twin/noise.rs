@@ -23,6 +23,8 @@ pub struct Noise {
     pub bias_walk: f64,
     /// (m/s²)²/s.
     pub force_walk: f64,
+    /// Factors on both while the box moves, gyroscope's first: 1 for what wanders with time alone.
+    pub walk_in_motion: [f64; 2],
     /// Factor on the rate density in motion.
     pub motion_scale: f64,
     /// rad.
@@ -66,6 +68,7 @@ impl Noise {
             force_density: f64::from(device.force_density),
             bias_walk: BIAS_WALK_FLOOR,
             force_walk: FORCE_WALK_FLOOR,
+            walk_in_motion: [1.0; 2],
             motion_scale: f64::from(device.motion_scale).max(1.0),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),

@@ -60,6 +60,9 @@ pub struct Moment {
     pub rate: Vector3<f64>,
     /// Its mean over a sixth of a second: for what depends on its sign, which noise would turn.
     pub smooth_rate: Vector3<f64>,
+    /// How far the true rate may be from that mean, 1 sigma: how it trembles about it beyond the noise, and how uncertain the
+    /// mean is. Zero at rest on something solid.
+    pub tremor: Vector3<f64>,
     /// Its derivative, rad/s².
     pub acceleration: Vector3<f64>,
     /// True specific force by the nominal, m/s², frame b: in rests and turns gravity alone, in the hand what was measured.
@@ -108,12 +111,14 @@ impl Trajectory {
     pub fn new(samples: &[Raw], stretches: &[Stretch], nominal: &Nominal, gravity_mps2: f64) -> Self {
         let rates: Vec<_> = samples.iter().map(|raw| nominal.rate(raw)).collect();
         let slopes = slopes(samples, &rates);
+        let noise = Quiet::of(stretches, &slopes);
         let mut walker = Walker {
             samples,
             nominal,
             gravity_mps2,
             rates,
             slopes,
+            noise,
             mean_degc: mean_temperature(samples),
             attitude: UnitQuaternion::identity(),
             moments: Vec::with_capacity(samples.len()),
@@ -134,7 +139,8 @@ struct Walker<'a> {
     nominal: &'a Nominal,
     gravity_mps2: f64,
     rates: Vec<Vector3<f64>>,
-    slopes: Vec<(Vector3<f64>, Vector3<f64>)>,
+    slopes: Vec<Window>,
+    noise: Quiet,
     mean_degc: f64,
     attitude: UnitQuaternion<f64>,
     moments: Vec<Moment>,
@@ -212,8 +218,9 @@ impl Walker<'_> {
             t_s: raw.t_s,
             attitude: self.attitude,
             rate: if solid { Vector3::zeros() } else { rate },
-            smooth_rate: if solid { Vector3::zeros() } else { self.slopes[index].0 },
-            acceleration: if solid { Vector3::zeros() } else { self.slopes[index].1 },
+            smooth_rate: if solid { Vector3::zeros() } else { self.slopes[index].mean },
+            tremor: if solid { Vector3::zeros() } else { self.noise.tremor(&self.slopes[index]) },
+            acceleration: if solid { Vector3::zeros() } else { self.slopes[index].slope },
             zero: self.nominal.gyro_bias,
             force,
             jerk,
@@ -228,8 +235,45 @@ impl Walker<'_> {
     }
 }
 
-/// Mean and least-squares slope of the rate over `SLOPE_S` to either side.
-fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<(Vector3<f64>, Vector3<f64>)> {
+/// The rate over `SLOPE_S` to either side.
+#[derive(Clone, Copy)]
+struct Window {
+    mean: Vector3<f64>,
+    /// By least squares.
+    slope: Vector3<f64>,
+    /// About the straight line, mean square.
+    scatter: Vector3<f64>,
+}
+
+/// What windows show of a rate that is none: noise.
+struct Quiet {
+    /// Mean scatter.
+    scatter: Vector3<f64>,
+    /// Variance of the means.
+    mean: Vector3<f64>,
+}
+
+impl Quiet {
+    fn of(stretches: &[Stretch], windows: &[Window]) -> Self {
+        let (mut scatter, mut mean, mut count) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        for stretch in stretches.iter().filter(|stretch| matches!(stretch.deed, Deed::Rest { .. })) {
+            let windows = &windows[stretch.samples.clone()];
+            let middle = windows.iter().map(|window| window.mean).sum::<Vector3<f64>>() / windows.len() as f64;
+            for window in windows {
+                scatter += window.scatter;
+                mean += (window.mean - middle).map(|v| v * v);
+                count += 1.0;
+            }
+        }
+        Self { scatter: scatter / f64::max(count, 1.0), mean: mean / f64::max(count, 1.0) }
+    }
+
+    fn tremor(&self, window: &Window) -> Vector3<f64> {
+        Vector3::from_fn(|i, _| ((window.scatter[i] - self.scatter[i]).max(0.0) + self.mean[i]).sqrt())
+    }
+}
+
+fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<Window> {
     let (mut first, mut end) = (0, 0);
     samples
         .iter()
@@ -240,16 +284,24 @@ fn slopes(samples: &[Raw], rates: &[Vector3<f64>]) -> Vec<(Vector3<f64>, Vector3
             while end < samples.len() && samples[end].t_s <= middle.t_s + SLOPE_S {
                 end += 1;
             }
-            let mean_s = samples[first..end].iter().map(|raw| raw.t_s).sum::<f64>() / (end - first) as f64;
-            let (mut sum, mut moment, mut inertia) = (Vector3::zeros(), Vector3::zeros(), 0.0);
-            for (raw, rate) in samples[first..end].iter().zip(&rates[first..end]) {
-                let lever_s = raw.t_s - mean_s;
-                sum += rate;
-                moment += rate * lever_s;
-                inertia += lever_s * lever_s;
-            }
-            let mean = sum / (end - first) as f64;
-            (mean, if inertia > 0.0 { moment / inertia } else { Vector3::zeros() })
+            window(&samples[first..end], &rates[first..end])
         })
         .collect()
+}
+
+fn window(samples: &[Raw], rates: &[Vector3<f64>]) -> Window {
+    let count = samples.len() as f64;
+    let mean_s = samples.iter().map(|raw| raw.t_s).sum::<f64>() / count;
+    let (mut sum, mut moment, mut squares, mut inertia) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros(), 0.0);
+    for (raw, rate) in samples.iter().zip(rates) {
+        let lever_s = raw.t_s - mean_s;
+        sum += rate;
+        moment += rate * lever_s;
+        squares += rate.component_mul(rate);
+        inertia += lever_s * lever_s;
+    }
+    let mean = sum / count;
+    let slope = if inertia > 0.0 { moment / inertia } else { Vector3::zeros() };
+    let scatter = squares / count - mean.component_mul(&mean) - slope.component_mul(&slope) * (inertia / count);
+    Window { mean, slope, scatter: scatter.map(|v| v.max(0.0)) }
 }

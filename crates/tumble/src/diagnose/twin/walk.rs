@@ -92,7 +92,7 @@ impl<'a> Walk<'a> {
         while first < end {
             let last = self.step_end(first, end, REST_STEP_S);
             let sums = self.sums(first, last, stretch);
-            self.wander(self.moment(last).t_s);
+            self.wander(self.moment(last).t_s, [1.0; 2]);
             let late = 0.5 * (self.moment(first).t_s + self.moment(last).t_s) > middle_s;
             if solid {
                 self.observe_rate(stretch, first, last, &sums, late);
@@ -136,7 +136,7 @@ impl<'a> Walk<'a> {
         while first < end {
             let last = self.step_end(first, end, TURN_STEP_S);
             let sums = self.sums(first, last, stretch);
-            self.wander(self.moment(last).t_s);
+            self.wander(self.moment(last).t_s, self.pass.noise.walk_in_motion);
             if turn && self.aligned && !self.bridge {
                 let late = 0.5 * (self.moment(first).t_s + self.moment(last).t_s) > middle_s;
                 self.observe_force(stretch, first, last, &sums, late);
@@ -160,11 +160,11 @@ impl<'a> Walk<'a> {
         if end - last < (last - first) / 2 { end } else { last }
     }
 
-    fn wander(&mut self, now_s: f64) {
+    fn wander(&mut self, now_s: f64, [gyro, accel]: [f64; 2]) {
         let dt_s = (now_s - self.last_s).max(0.0);
         self.last_s = now_s;
-        self.state.wander(state::GYRO_BIAS, 3, self.pass.noise.bias_walk * dt_s);
-        self.state.wander(state::ACCEL_BIAS, 3, self.pass.noise.force_walk * dt_s);
+        self.state.wander(state::GYRO_BIAS, 3, gyro * self.pass.noise.bias_walk * dt_s);
+        self.state.wander(state::ACCEL_BIAS, 3, accel * self.pass.noise.force_walk * dt_s);
     }
 
     fn propagate(&mut self, sums: &Sums) {

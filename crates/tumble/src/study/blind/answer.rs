@@ -28,6 +28,9 @@ pub struct Named {
     /// What explains as much.
     #[serde(default)]
     pub tied_with: Vec<String>,
+    /// Shapes without a name that explain as much.
+    #[serde(default)]
+    pub tied_with_shapes: Vec<String>,
     /// With sigmas.
     #[serde(default)]
     pub parameters: Vec<Value>,

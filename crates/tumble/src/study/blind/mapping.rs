@@ -77,16 +77,24 @@ fn tilt(truth: &[True]) -> Vec<(String, f64, String)> {
     both(renamed(truth, "angle", "|east, north|"), renamed(truth, "time", "at"))
 }
 
+/// The diagnosis states places less their mean: what they have in common is a lever arm.
+fn places(truth: &[True]) -> Vec<(String, f64, String)> {
+    let all = matrix(truth, |i, j| format!("offset_of_{i}_{j}"), |i, j| format!("{i}_at_{j}"));
+    let mean = |k: usize| all.iter().skip(k % 3).step_by(3).map(|one| one.1).sum::<f64>() / 3.0;
+    all.iter().enumerate().map(|(k, (name, value, unit))| (name.clone(), value - mean(k), unit.clone())).collect()
+}
+
 /// Effects whose numbers can be compared.
 const RULES: &[(&str, Rule)] = &[
     ("gyro_g_sensitivity", |t| matrix(t, |i, j| format!("g_{i}{j}"), |i, j| format!("{i}_per_{j}"))),
-    // The simulation has no cross terms: those of the diagnosis are true at 0.
+    // The simulation has no cross terms: those of the diagnosis, where it has any, are true at 0.
     ("gyro_g_squared", |t| {
         let cross = |i: &str, j: &str| {
             let own = of(t, &format!("c_{i}"));
             own.map(|own| (format!("{i}_per_{j}_squared"), if i == j { own.value } else { 0.0 }, own.unit.clone()))
         };
-        AXES.iter().flat_map(|i| AXES.iter().filter_map(move |j| cross(i, j))).collect()
+        let all = AXES.iter().flat_map(|i| AXES.iter().filter_map(move |j| cross(i, j))).collect();
+        both(all, axes(t, "c"))
     }),
     ("gyro_scale_quadratic", |t| axes(t, "k")),
     // A change of scale in ppm at 100 dps is 1e-4 of it in ppm/dps².
@@ -107,7 +115,7 @@ const RULES: &[(&str, Rule)] = &[
     ("accel_quadratic", |t| axes(t, "k")),
     ("accel_cubic", |t| axes(t, "k")),
     ("accel_lever_arm", |t| axes(t, "lever")),
-    ("accel_internal_lever_arms", |t| matrix(t, |i, j| format!("offset_of_{i}_{j}"), |i, j| format!("{i}_at_{j}"))),
+    ("accel_internal_lever_arms", places),
     ("gyro_accel_lag", |t| renamed(t, "lag", "accelerometer_after_gyroscope")),
     ("incomplete_turn", |t| renamed(t, "shortfall", "missing")),
     ("platform_tilt_change", tilt),

@@ -12,6 +12,7 @@ pub mod mapping;
 pub mod score;
 pub(super) mod size;
 mod store;
+mod strength;
 pub mod table;
 pub mod tally;
 mod units;
@@ -26,7 +27,6 @@ use self::answer::{Answer, Asked};
 use self::ask::Oracle;
 use self::case::{Case, Setting};
 use self::score::{Hidden, Scored};
-use self::size::Size;
 use self::store::Store;
 use self::tally::Report;
 use super::parallel;
@@ -60,6 +60,8 @@ pub struct Options {
     pub keep: bool,
     /// Answers that are there are computed anew.
     pub again: bool,
+    /// Nothing is asked: what is answered in the folder is scored.
+    pub partial: bool,
     /// Sizes in detection limits.
     pub at: f64,
     /// Noise in motion over that at rest.
@@ -111,6 +113,11 @@ pub fn run(options: &Options, program: &Path, progress: &mut Progress) -> Result
     if options.again {
         store.forget_answers()?;
     }
+    if options.partial {
+        let names = store.answered()?;
+        let scored = names.iter().map(|name| unseal(&store, name)).collect::<Result<Vec<_>, _>>()?;
+        return Ok(Report::new(options, &scored));
+    }
     let patience = Duration::from_secs_f64(options.patience_s);
     let oracle = Oracle { program: program.to_path_buf(), patience };
     let mut cases = case::draw(options);
@@ -119,14 +126,12 @@ pub fn run(options: &Options, program: &Path, progress: &mut Progress) -> Result
     let ask = |k: usize| {
         let case = &cases[k];
         let twin = twins.get(&case.setting.name("twin")).and_then(|asked| asked.answer.as_ref());
-        let size = |id: &&'static str| size::size(id, options.at, twin, case.setting.seed);
-        let sizes: Vec<Size> = case.ids.iter().filter_map(size).collect();
-        store.case(&oracle, case, &sizes)
+        store.case(&oracle, case, || size::sizes(&case.ids, options.at, twin, &case.setting))
     };
     parallel::map(total, options.jobs, ask, &mut |done| progress("recordings", done, total))
         .into_iter()
         .collect::<Result<Vec<()>, _>>()?;
-    let scored = cases.iter().map(|case| unseal(&store, case)).collect::<Result<Vec<_>, _>>()?;
+    let scored = cases.iter().map(|case| unseal(&store, &case.name)).collect::<Result<Vec<_>, _>>()?;
     let report = Report::new(options, &scored);
     store.write("cases.csv", &table::cases(&scored))?;
     store.write("report.json", &format!("{}\n", serde_json::to_string(&report).unwrap_or_default()))?;
@@ -135,10 +140,10 @@ pub fn run(options: &Options, program: &Path, progress: &mut Progress) -> Result
 }
 
 /// Opens a seal when all is answered.
-fn unseal(store: &Store, case: &Case) -> Result<Scored, StudyError> {
-    let hidden = Hidden::of(&store.secret(&case.name)?)
-        .ok_or_else(|| StudyError::Plan(format!("{}: its seal is of another study", case.name)))?;
-    Ok(Scored::new(case.name.clone(), hidden, store.said(&case.name)?))
+fn unseal(store: &Store, name: &str) -> Result<Scored, StudyError> {
+    let hidden = Hidden::of(&store.secret(name)?)
+        .ok_or_else(|| StudyError::Plan(format!("{name}: its seal is of another study")))?;
+    Ok(Scored::new(name.to_owned(), hidden, store.said(name)?))
 }
 
 /// Has the clean twins diagnosed, and moves a case on to the next scheme where its effects cannot show.

@@ -59,7 +59,7 @@ pub enum Outcome {
     Wrong,
     /// Something is there, unnamed.
     Unknown,
-    /// An alias of something outside the catalogue, said to be tied.
+    /// An alias of something outside the catalogue, said to be tied with another name or with a shape that has none.
     Alias,
     /// Nothing was seen.
     Missed,
@@ -150,7 +150,7 @@ pub fn judge(group: Group, ids: &[&str], answer: &Answer) -> Outcome {
         },
         Group::Foreign | Group::Removed => match named.as_slice() {
             [] => nothing(answer),
-            [one] if !one.tied_with.is_empty() => Outcome::Alias,
+            [one] if !one.tied_with.is_empty() || !one.tied_with_shapes.is_empty() => Outcome::Alias,
             _ => Outcome::Wrong,
         },
         Group::Effect | Group::Pair => {

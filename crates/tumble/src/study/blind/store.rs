@@ -72,12 +72,16 @@ impl Store {
     }
 
     /// Makes, seals, asks.
-    pub fn case(&self, oracle: &Oracle, case: &Case, sizes: &[Size]) -> Result<(), StudyError> {
+    pub fn case(&self, oracle: &Oracle, case: &Case, sizes: impl FnOnce() -> Vec<Size>) -> Result<(), StudyError> {
         let (path, to) = (self.recording(&case.name), self.answer(&case.name));
         if ask::read(&to).is_some() && self.secret(&case.name).is_ok() {
             return Ok(());
         }
-        let (recording, secret) = make::make_case(case, sizes).map_err(StudyError::Plan)?;
+        // What was sealed once stays: sizes take a minute to find.
+        let sealed =
+            self.secret(&case.name).ok().and_then(|secret| serde_json::from_value(secret["sizes"].clone()).ok());
+        let sizes: Vec<Size> = sealed.unwrap_or_else(sizes);
+        let (recording, secret) = make::make_case(case, &sizes).map_err(StudyError::Plan)?;
         let mut bytes = Vec::new();
         recording.write(&mut bytes).map_err(|error| StudyError::file(&path, error))?;
         std::fs::write(&path, &bytes).map_err(|error| StudyError::file(&path, error))?;
@@ -96,6 +100,18 @@ impl Store {
     pub fn said(&self, name: &str) -> Result<Asked, StudyError> {
         let path = self.answer(name);
         ask::read(&path).ok_or_else(|| StudyError::Plan(format!("{}: no answer", path.display())))
+    }
+
+    /// Names of the recordings that have an answer.
+    pub fn answered(&self) -> Result<Vec<String>, StudyError> {
+        let folder = self.root.join("answers");
+        let entries = std::fs::read_dir(&folder).map_err(|error| StudyError::file(&folder, error))?;
+        let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+        let json = paths.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
+        let mut names: Vec<String> =
+            json.filter_map(|path| Some(path.file_stem()?.to_string_lossy().into_owned())).collect();
+        names.sort();
+        Ok(names)
     }
 
     /// Answers of another build are of no use to somebody who changed the search.

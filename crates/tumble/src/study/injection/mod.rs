@@ -189,7 +189,7 @@ fn bearable(options: &Options, id: &str, answer: &Answer) -> Option<Size> {
     if says || !listed {
         return None;
     }
-    size::size(id, options.at, Some(answer), options.seed).filter(|size| size.limit.is_some())
+    size::as_stated(id, options.at, Some(answer), options.seed).filter(|size| size.limit.is_some())
 }
 
 fn trial(

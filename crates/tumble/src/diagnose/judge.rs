@@ -1,0 +1,151 @@
+//! Which of the names that the search accepted may be said.
+
+use super::exhibits;
+use super::findings::{Finding, TIE};
+use super::search::bench::Bench;
+use super::search::select::Selection;
+use super::search::unknown::{self, Leftover};
+use super::search::wandering;
+
+/// ln of the odds that a name needs beside a distortion of the samples: 5e8 to 1.
+const BESIDE_GATES: f64 = 20.0;
+
+/// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
+const BEYOND_UNKNOWN: f64 = 0.5;
+
+/// What of the accepted keeps its name.
+pub struct Judged {
+    /// What stands.
+    pub named: Vec<Finding>,
+    /// What fell, for what is unknown resembles it.
+    pub demoted: Vec<Finding>,
+    /// Is something there that has no name?
+    pub unknown: bool,
+    /// What improves only on the data it was fitted to.
+    pub dropped: Vec<String>,
+    /// Is something left that a distortion of the samples accounts for?
+    pub traces: bool,
+    /// Shapes that explain better than a name did.
+    pub better: Vec<(String, f64)>,
+    /// Largest probability of as much by chance.
+    pub p_value: f64,
+}
+
+impl Judged {
+    /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
+    /// odds that no trace would reach; a bias that wanders is none.
+    pub fn beside_gates(&mut self) {
+        if self.unknown {
+            self.traces = true;
+        }
+        self.unknown = false;
+        let (named, dropped): (Vec<_>, Vec<_>) = std::mem::take(&mut self.named)
+            .into_iter()
+            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.found.id.ends_with("_random_walk"));
+        self.named = named;
+        self.traces |= !dropped.is_empty();
+    }
+}
+
+/// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
+pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
+    let mut judged = Judged {
+        named: Vec::new(),
+        demoted: Vec::new(),
+        unknown: leftover.is_real(),
+        dropped: Vec::new(),
+        traces: false,
+        better: Vec::new(),
+        p_value: leftover.p_value(),
+    };
+    let refuted = refute_walks(bench, &found, &mut judged);
+    for mut finding in found {
+        let id = finding.found.id.as_str();
+        if refuted.iter().any(|walk| walk.takes_down(&finding)) {
+            judged.demoted.push(finding);
+            continue;
+        }
+        let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
+            continue;
+        };
+        if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
+            judged.dropped.push(finding.found.id.clone());
+            continue;
+        }
+        let shape = shape_instead(bench, selection, k);
+        let clear = selection.evidence - (shape.base + shape.evidence);
+        // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
+        let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
+        if clear < -TIE {
+            judged.unknown = true;
+            judged.p_value = judged.p_value.min((clear).exp());
+            judged.better.extend(exhibits::correlates(bench, &shape));
+            judged.demoted.push(finding);
+        } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
+            judged.demoted.push(finding);
+        } else {
+            finding.found.tied_with_shapes = exhibits::circumstances(bench, &shape, selection.evidence);
+            judged.named.push(finding);
+        }
+    }
+    // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
+    if judged.unknown {
+        let named = std::mem::take(&mut judged.named);
+        let (walks, named): (Vec<_>, Vec<_>) =
+            named.into_iter().partition(|finding| finding.found.id.ends_with("_random_walk"));
+        judged.demoted.extend(walks);
+        judged.named = named;
+    }
+    judged
+}
+
+/// The best that shapes without a name do in the place of an accepted effect, at its noise and at the null's.
+fn shape_instead(bench: &mut Bench, selection: &Selection, k: usize) -> Leftover {
+    let noise = bench.twin.noise;
+    let walks = bench.candidates[bench.accepted[k].candidate].walk.is_some();
+    let mut best: Option<Leftover> = None;
+    for noise in
+        [selection.null_noise, noise].into_iter().take(if walks || noise == selection.null_noise { 1 } else { 2 })
+    {
+        bench.twin.noise = noise;
+        let shape = unknown::weigh(bench, Some(k));
+        if best.as_ref().is_none_or(|best| shape.base + shape.evidence > best.base + best.evidence) {
+            best = Some(shape);
+        }
+    }
+    bench.twin.noise = noise;
+    best.unwrap_or_else(|| unknown::weigh(bench, Some(k)))
+}
+
+/// A walk that is none.
+struct Refuted {
+    id: String,
+    triad: &'static str,
+    evidence: f64,
+}
+
+impl Refuted {
+    /// Itself, and what was found on the same triad beside it and is less than it: its size rests on a walk that was wrong.
+    fn takes_down(&self, finding: &Finding) -> bool {
+        let found = &finding.found;
+        found.id == self.id || (found.id.starts_with(self.triad) && found.evidence < self.evidence)
+    }
+}
+
+/// Walks that do not behave as one.
+fn refute_walks(bench: &mut Bench, found: &[Finding], judged: &mut Judged) -> Vec<Refuted> {
+    let mut refuted = Vec::new();
+    for finding in found {
+        let walk = |candidate: &&super::search::bench::Candidate| candidate.effect.card.id == finding.found.id;
+        let Some((gyro, ..)) = bench.candidates.iter().find(walk).and_then(|candidate| candidate.walk) else {
+            continue;
+        };
+        let Some((why, gain)) = wandering::refute(bench, gyro) else { continue };
+        let (triad, name) = if gyro { ("gyro_", "gyroscope") } else { ("accel_", "accelerometer") };
+        judged.unknown = true;
+        judged.p_value = judged.p_value.min((-gain).exp());
+        judged.better.push((format!("{why} ({name})"), gain));
+        refuted.push(Refuted { id: finding.found.id.clone(), triad, evidence: finding.found.evidence });
+    }
+    refuted
+}

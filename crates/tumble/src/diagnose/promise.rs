@@ -1,0 +1,44 @@
+//! What a recording promises the search, without the search: the gain of one effect against the threshold in force, or of all
+//! shapes without a name. A study that makes effects asks it how large one must be to be seen.
+
+use super::Options;
+use super::catalogue::STRUCTURAL;
+use super::intake::intake;
+use super::search::bench::Bench;
+use super::search::ledger::Ledger;
+use super::search::null::{self, FALSE_ALARMS};
+use super::search::{select, unknown};
+use crate::recording::Recording;
+
+fn bench(recording: &Recording, options: &Options) -> Option<Bench> {
+    let prepared = intake(recording, options.conditions).prepared.ok()?;
+    Some(Bench::new(prepared.twin, &options.without))
+}
+
+/// ln of the odds that a name needs on this recording.
+pub fn threshold(recording: &Recording, options: &Options) -> Option<f64> {
+    let mut bench = bench(recording, options)?;
+    let (noise, _) = select::settle_walks(&mut bench);
+    let rows = bench.rows(noise);
+    let scales = Ledger::new(&rows, |_| true).fit(&[]).scales;
+    Some(null::threshold(&bench, &rows, &scales, options.seed))
+}
+
+/// The search knows nothing but what `known` says: its columns are a few, and so are the seconds.
+fn knowing(options: &Options, known: impl Fn(&str) -> bool) -> Options {
+    let ids = STRUCTURAL.iter().map(|effect| effect.card.id).filter(|id| !known(id));
+    Options { without: ids.map(str::to_owned).collect(), ..options.clone() }
+}
+
+/// ln of the odds for this effect against the null, whatever noise excuses it best; none if the search does not know it.
+pub fn of_effect(recording: &Recording, options: &Options, id: &str) -> Option<f64> {
+    let mut bench = bench(recording, &knowing(options, |known| known == id))?;
+    select::score(&mut bench).first().map(|score| score.gain)
+}
+
+/// ln of the mean odds of all shapes without a name, and what it needs.
+pub fn of_shapes(recording: &Recording, options: &Options) -> Option<(f64, f64)> {
+    let mut bench = bench(recording, &knowing(options, |_| false))?;
+    bench.twin.noise = select::settle_walks(&mut bench).0;
+    Some((unknown::weigh(&mut bench, None).evidence, -FALSE_ALARMS.ln()))
+}
