@@ -1,9 +1,13 @@
 //! Small rates read as zero: `ω_raw = sign(ω) max(|ω| − d, 0)`, so larger ones lose d: `−clamp(ω, −d, d)`.
 //!
 //! On the axis of a turn that is nearly a change of scale, so that d comes from the axes which hardly turn, whose rates are
-//! of its own size and tremble. What is lost there is the mean of the clamp over what the rate may be: a normal distribution
-//! about the mean over a sixth of a second (the sample's own noise in the regressor would pass for an effect that takes noise
-//! away), as wide as the rate trembles about that mean and as the mean is uncertain.
+//! of its own size and tremble. What is lost there is the mean of the clamp over what the rate may be. Over a turn or move, rates
+//! are taken for normal about their mean with variance τ²; the mean m over a sixth of a second, with noise n of σ_n, then leaves
+//! `x̂ = m̄ + τ²/(τ² + σ_n²) (m − m̄)`, uncertain by what it trembles about m and by `τ σ_n / √(τ² + σ_n²)`. An axis that
+//! reads its own noise and nothing else loses nothing.
+//!
+//! x̂ holds noise, of which the residual is made too, so that a zone seems to take noise away: `−σ_n² E[g′]` (Stein), a negative
+//! zone of at most 0.4 σ_n (0.007 °/s by the sheet) where τ is σ_n, and none where it is less. A zone cannot be negative.
 
 use std::sync::Arc;
 
@@ -11,11 +15,14 @@ use nalgebra::Vector3;
 
 use super::{AXES, Card, DPS, Effect, Model, Variant, parameter, reading};
 use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::influence::Push;
 use crate::diagnose::twin::trajectory::Moment;
 
 /// Of a zone whose size is not known yet, deg/s: narrow, so that its edge is all that shows.
 const NARROW: f64 = 1e-3;
+/// Of [`Moment::mean_rate`], s.
+const WINDOW_S: f64 = 1.0 / 6.0;
 
 const CARD: Card = Card {
     id: "gyro_dead_zone",
@@ -30,27 +37,92 @@ const CARD: Card = Card {
 /// In the catalogue.
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
-fn model(_: &Twin) -> Model {
+fn model(twin: &Twin) -> Model {
+    let motions = Arc::new(motions(twin));
     // The zone may lie about the sensor's own zero, or, where a driver takes the bias off first, about rest.
-    Model::Shift(vec![variant(1.0), variant(0.0)])
+    Model::Shift(vec![variant(1.0, &motions), variant(0.0, &motions)])
 }
 
-fn variant(zero: f64) -> Variant {
+/// What the rates of a turn or move may have been.
+#[derive(Clone, Copy, Default)]
+struct Motion {
+    first: usize,
+    mean: Vector3<f64>,
+    /// `τ²/(τ² + σ_n²)`.
+    believed: Vector3<f64>,
+}
+
+/// x̂, how uncertain it is, and the bias: rad/s.
+#[derive(Clone, Copy)]
+struct Rate {
+    likely: Vector3<f64>,
+    sigma: Vector3<f64>,
+    zero: Vector3<f64>,
+}
+
+impl Motion {
+    fn of(moments: &[&Moment], noise: &Vector3<f64>) -> Self {
+        let count = moments.len().max(1) as f64;
+        let mean = moments.iter().map(|moment| moment.mean_rate).sum::<Vector3<f64>>() / count;
+        let about = |moment: &&Moment| (moment.mean_rate - mean).map(|v| v * v);
+        let scatter = moments.iter().map(about).sum::<Vector3<f64>>() / count;
+        let length_s = moments.last().map_or(0.0, |last| last.t_s) - moments.first().map_or(0.0, |first| first.t_s);
+        // Four sigma of a variance from that many windows: noise alone is not taken for a motion.
+        let chance = 1.0 + 4.0 * (2.0 / (length_s / WINDOW_S).max(1.0)).sqrt();
+        let believed = scatter.zip_map(noise, |all, noise| if all > chance * noise { 1.0 - noise / all } else { 0.0 });
+        Self { first: moments.first().map_or(0, |moment| moment.index), mean, believed }
+    }
+
+    fn rate(&self, moment: &Moment, noise: &Vector3<f64>) -> Rate {
+        let likely = self.mean + self.believed.component_mul(&(moment.mean_rate - self.mean));
+        // Of the tremor's variance, σ_n² is the mean's own.
+        let sigma = Vector3::from_fn(|i, _| {
+            let trembles = (moment.tremor[i].powi(2) - noise[i]).max(0.0);
+            (trembles + self.believed[i] * noise[i]).sqrt()
+        });
+        Rate { likely, sigma, zero: moment.zero }
+    }
+}
+
+/// By stretch; rests have none.
+fn motions(twin: &Twin) -> Vec<(Motion, Vec<Rate>)> {
+    let noise = &twin.trajectory.mean_rate_variance;
+    let mut by_stretch: Vec<Vec<&Moment>> = Vec::new();
+    for moment in twin.trajectory.moments.iter().filter(|moment| !matches!(moment.deed, Deed::Rest { .. })) {
+        by_stretch.resize(by_stretch.len().max(moment.stretch + 1), Vec::new());
+        by_stretch[moment.stretch].push(moment);
+    }
+    let motion = |moments: Vec<&Moment>| {
+        let motion = Motion::of(&moments, noise);
+        (motion, moments.iter().map(|moment| motion.rate(moment, noise)).collect())
+    };
+    by_stretch.into_iter().map(motion).collect()
+}
+
+fn variant(about: f64, motions: &Arc<Vec<(Motion, Vec<Rate>)>>) -> Variant {
+    let motions = motions.clone();
     let at_size = move |axis: usize, half_width_dps: f64| {
         let half_width = half_width_dps.abs().max(NARROW) * DPS;
+        let motions = motions.clone();
         reading(move |moment: &Moment| {
-            let mean = zero * moment.zero[axis] + moment.smooth_rate[axis];
-            let lost = clamped(mean, moment.tremor[axis], half_width);
+            let moving = motions
+                .get(moment.stretch)
+                .and_then(|(motion, rates)| rates.get(moment.index.checked_sub(motion.first)?));
+            let lost = match moving {
+                Some(rate) => clamped(about * rate.zero[axis] + rate.likely[axis], rate.sigma[axis], half_width),
+                None => (about * moment.zero[axis]).clamp(-half_width, half_width),
+            };
             Push::rate(Vector3::ith(axis, -DPS * lost / half_width))
         })
     };
-    Variant {
+    let variant = Variant {
         setting: None,
         parameters: AXES.iter().map(|axis| parameter(*axis, "dps", 0.2)).collect(),
         influences: (0..3).map(|axis| at_size(axis, NARROW)).collect(),
         own: None,
         at_size: Some(Arc::new(at_size)),
-    }
+    };
+    variant.positive()
 }
 
 /// Mean of `clamp(x, −d, d)` for x normal with this mean and sigma:
