@@ -22,6 +22,19 @@ pub fn limits(bench: &mut Bench, selection: &Selection) -> Vec<Limit> {
     (0..bench.candidates.len()).map(|candidate| limit(bench, selection, &ledger, candidate)).collect()
 }
 
+/// One an effect, where a gate and the twin can both show it: the finer.
+pub fn one_each(limits: impl Iterator<Item = Limit>) -> Vec<Limit> {
+    let mut each: Vec<Limit> = Vec::new();
+    for limit in limits {
+        match each.iter_mut().find(|other| other.id == limit.id) {
+            Some(other) if limit.testable && (!other.testable || limit.limit < other.limit) => *other = limit,
+            Some(_) => {}
+            None => each.push(limit),
+        }
+    }
+    each
+}
+
 fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) -> Limit {
     let candidate = &bench.candidates[index];
     let id = candidate.effect.card.id.to_string();
@@ -84,7 +97,23 @@ fn noncentrality(value: f64, dof: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::noncentrality;
+    use super::{noncentrality, one_each};
+    use crate::diagnose::diagnosis::Limit;
+
+    #[test]
+    fn the_finer_of_two_limits_stands() {
+        let limit = |limit: f64, testable: bool| Limit {
+            id: "incomplete_turn".into(),
+            limit,
+            unit: "deg".into(),
+            testable,
+            why: String::new(),
+        };
+        let each = one_each([limit(0.6, true), limit(22.6, true)].into_iter());
+        assert_eq!((each.len(), each[0].limit), (1, 0.6));
+        let each = one_each([limit(0.0, false), limit(22.6, true)].into_iter());
+        assert_eq!((each.len(), each[0].limit), (1, 22.6));
+    }
 
     /// One degree: `(z + √λ)²` is below v where z is below `√v − √λ`, in 5 of 100 cases at −1.645.
     #[test]

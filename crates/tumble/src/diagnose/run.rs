@@ -88,8 +88,7 @@ fn assemble(
     conditions: Conditions,
     origin_s: f64,
 ) -> Diagnosis {
-    let mut limits = limits::limits(bench, selection);
-    limits.extend(gated.limits);
+    let limits = limits::one_each(limits::limits(bench, selection).into_iter().chain(gated.limits));
     let mut effects = gated.found;
     effects.extend(judged.named.into_iter().map(|finding| finding.found));
     effects.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
