@@ -24,8 +24,9 @@ use crate::tape::Tape;
 const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
 /// At least this many passes: three to come near, one to judge the noise, one to confirm.
 const MIN_PASSES: u32 = 5;
-/// At most this many.
-const MAX_PASSES: u32 = 20;
+/// At most this many, so that any session is done in ten seconds at 96 MHz: a full tape takes some 48 M instructions a pass in
+/// the bench's build (`docs/bench.md`) and a sixth more in the product's, 16 of them 0.9 G. Nineteen of twenty need 12 or fewer.
+const MAX_PASSES: u32 = 16;
 /// Converged when no parameter moved by more than this many of its sigma.
 const CONVERGED: f32 = 0.05;
 /// Passes before noise is judged by residuals, and the last that judges it: then it stands, so that the rest converge.
