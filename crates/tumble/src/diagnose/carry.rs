@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use tumble_core::estimate::Conditions;
 
 use super::diagnosis::Value;
-use super::findings;
+use super::numbers;
 use super::prepare::prepare;
 use super::search::bench::{Accepted, Bench};
 use super::search::ledger::Ledger;
@@ -84,7 +84,7 @@ pub fn carry(
     let carried = (0..ids.len()).map(|k| Carried {
         id: ids[k].clone(),
         equation: bench.candidates[bench.accepted[k].candidate].effect.card.equation.into(),
-        parameters: findings::shift_values(&bench, &rows, &ledger, k).0.into_iter().map(Into::into).collect(),
+        parameters: numbers::shift_values(&bench, &rows, &ledger, k).0.into_iter().map(Into::into).collect(),
         about_degc: temperature.is_finite().then_some(temperature),
     });
     let carried = carried.collect();

@@ -1,10 +1,10 @@
 //! What the report's pictures are drawn from.
 
 use super::findings::{Finding, TIE};
-use super::held_out;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
+use super::search::shares;
 use super::search::unknown::{Leftover, shared};
 use super::twin::data::Deed;
 use super::twin::rows::Address;
@@ -69,7 +69,7 @@ pub fn exhibits(
     origin_s: f64,
 ) -> Exhibits {
     let (isolable, isolability) = isolability(bench, selection);
-    let after = held_out::left(bench, &selection.after);
+    let after = shares::left(bench, &selection.after);
     let regressions = findings
         .iter()
         .map(|finding| Regression {

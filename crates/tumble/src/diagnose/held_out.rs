@@ -3,9 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::diagnosis::HeldOut;
-use super::findings::{freed, parameters};
 use super::search::bench::Bench;
-use super::search::ledger::{Fit, Ledger};
+use super::search::ledger::Ledger;
+use super::search::shares::{freed, parameters, residual};
 use super::twin::rows::Rows;
 
 /// An effect that shows almost only in one half of the rows, such as one turn's end, cannot be tried on the other.
@@ -45,30 +45,6 @@ pub fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
     }
     let count_rows = rows.at.len() as f64;
     Some(HeldOut { before: sums[0] / count_rows, after: sums[1] / count_rows, constancy_p: constancy(&fits) })
-}
-
-/// Rows less what the accepted effects explain, but for one.
-pub fn residual(bench: &Bench, rows: &Rows, fit: &Fit, but: Option<usize>) -> Vec<f64> {
-    let terms = bench.accepted_terms(None);
-    let mut of = Vec::new();
-    (0..bench.accepted.len()).for_each(|k| of.extend(std::iter::repeat_n(k, parameters(bench, k))));
-    (0..rows.at.len())
-        .map(|i| {
-            let explained: f64 = terms
-                .iter()
-                .enumerate()
-                .filter(|(j, _)| Some(of[*j]) != but)
-                .map(|(j, term)| rows.responses[(i, term.column)] * fit.theta[j])
-                .sum();
-            rows.values[i] - explained
-        })
-        .collect()
-}
-
-/// Rows less what all accepted effects explain.
-pub fn left(bench: &Bench, rows: &Rows) -> Vec<f64> {
-    let fit = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
-    residual(bench, rows, &fit, None)
 }
 
 /// Chow's test: the halves' parameters differ by no more than their covariances say; χ² by Wilson & Hilferty (1931).

@@ -10,6 +10,7 @@ mod held_out;
 pub mod intake;
 mod judge;
 mod limits;
+mod numbers;
 pub mod prepare;
 pub mod promise;
 pub mod report;

@@ -5,5 +5,6 @@ pub mod generic;
 pub mod ledger;
 pub mod null;
 pub mod select;
+pub mod shares;
 pub mod unknown;
 pub mod wandering;

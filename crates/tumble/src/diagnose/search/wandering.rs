@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use super::bench::Bench;
 use super::ledger::log_mean;
 use super::null::FALSE_ALARMS;
-use crate::diagnose::held_out;
+use super::shares;
 use crate::diagnose::twin::noise::Noise;
 use crate::diagnose::twin::rows::Class;
 
@@ -90,7 +90,7 @@ fn innovations(bench: &mut Bench, gyro: bool) -> Left {
     let best = DENSITIES.map(|density| (density, bench.fit_alone(at(density), &terms).evidence));
     let best = best.into_iter().fold((1.0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
     let rows = bench.rows(at(best.0));
-    let left = held_out::left(bench, &rows);
+    let left = shares::left(bench, &rows);
     bench.twin.noise = found;
     let class = if gyro { Class::RestRate } else { Class::RestForce };
     let mut by_place = Left::new();

@@ -1,0 +1,107 @@
+//! An accepted effect's numbers with their sigmas.
+
+use nalgebra::DVector;
+
+use super::catalogue::Parameter;
+use super::diagnosis::Value;
+use super::search::bench::Bench;
+use super::search::ledger::{Fit, Ledger};
+use super::search::shares::{freed, parameters};
+use super::twin::noise::Noise;
+use super::twin::rows::Rows;
+
+/// θ of an accepted effect: what is in the fit and what was taken out.
+pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
+    let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
+    let taken = &bench.accepted[k].taken;
+    DVector::from_fn(parameters(bench, k), |i, _| fit.theta[before + i] + taken[i])
+}
+
+/// An accepted effect's numbers, freed of the prior, and its share in every row.
+pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (Vec<Value>, Vec<f64>) {
+    let fit = ledger.fit(&freed(bench.accepted_terms(None)));
+    let total = total(bench, &fit, k);
+    let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
+    let accepted = &bench.accepted[k];
+    let placed = &bench.candidates[accepted.candidate].variants[accepted.variant];
+    let count = placed.parameters.len();
+    let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
+    let (own, covariance) = match &placed.own {
+        Some(own) => (own * &total, own * covariance * own.transpose()),
+        None => (total.clone(), covariance),
+    };
+    let value = |(i, parameter): (usize, &Parameter)| Value {
+        name: parameter.name.clone(),
+        value: own[i],
+        sigma: covariance[(i, i)].sqrt(),
+        unit: parameter.unit.into(),
+    };
+    let mut values: Vec<Value> = placed.parameters.iter().enumerate().map(value).collect();
+    if let Some((name, value, unit)) = placed.setting {
+        let sigma = setting_sigma(bench, ledger, k);
+        values.push(Value { name: name.into(), value, sigma, unit: unit.into() });
+    }
+    let signal = (0..rows.at.len())
+        .map(|i| placed.columns.clone().enumerate().map(|(j, column)| rows.responses[(i, column)] * total[j]).sum())
+        .collect();
+    (values, signal)
+}
+
+/// Spread of the setting (a time, a time constant) over the variants, each by its evidence.
+fn setting_sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
+    let accepted = &bench.accepted[k];
+    let mut others = bench.accepted_terms(Some(k));
+    others.extend(bench.put_back(accepted));
+    let variants = &bench.candidates[accepted.candidate].variants;
+    let weights: Vec<(f64, f64)> = (0..variants.len())
+        .filter_map(|variant| {
+            let mut terms = others.clone();
+            // The variant in force: put-back and itself share columns; free ones replace the fixed.
+            terms.retain(|term| !variants[variant].columns.contains(&term.column));
+            let taken: &[f64] = if variant == accepted.variant { &accepted.taken } else { &[] };
+            terms.extend(bench.terms(accepted.candidate, variant, accepted.widening, taken));
+            Some((variants[variant].setting?.1, ledger.fit(&terms).evidence))
+        })
+        .collect();
+    let most = weights.iter().map(|weight| weight.1).fold(f64::NEG_INFINITY, f64::max);
+    let share = |evidence: f64| (evidence - most).exp();
+    let sum: f64 = weights.iter().map(|weight| share(weight.1)).sum();
+    let mean: f64 = weights.iter().map(|weight| weight.0 * share(weight.1)).sum::<f64>() / sum;
+    let spread = weights.iter().map(|w| (w.0 - mean).powi(2) * share(w.1)).sum::<f64>() / sum;
+    // Between two neighbours nothing is known: a step is uniform over its grid.
+    let mut settings: Vec<f64> = weights.iter().map(|weight| weight.0).collect();
+    settings.sort_by(f64::total_cmp);
+    let at = variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
+    let grid = settings.windows(2).filter(|w| w[0] <= at && at <= w[1]).map(|w| w[1] - w[0]).fold(0.0, f64::max);
+    (spread + grid * grid / 12.0).sqrt()
+}
+
+/// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm.
+pub fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
+    let noise = bench.twin.noise;
+    let terms = bench.accepted_terms(None);
+    let with = |factor: f64| {
+        if gyro {
+            Noise { bias_walk: noise.bias_walk * factor, ..noise }
+        } else {
+            Noise { force_walk: noise.force_walk * factor, ..noise }
+        }
+    };
+    let mut evidence = |log: f64| bench.fit_alone(with(log.exp()), &terms).evidence;
+    // Newton's method on a parabola through three points, twice.
+    let (mut at, mut sigma_log) = (0.0, 1.0);
+    for step in [0.7, 0.3] {
+        let [low, middle, high] = [at - step, at, at + step].map(&mut evidence);
+        let curvature = (2.0 * middle - low - high) / (step * step);
+        if curvature <= 0.0 {
+            break;
+        }
+        at += ((high - low) / (2.0 * step) / curvature).clamp(-1.5, 1.5);
+        sigma_log = curvature.sqrt().recip();
+    }
+    bench.twin.noise = with(at.exp());
+    bench.wander = (bench.twin.noise.bias_walk, bench.twin.noise.force_walk);
+    let density = if gyro { bench.twin.noise.bias_walk } else { bench.twin.noise.force_walk };
+    let value = density.sqrt() / unit_si;
+    Value { name: "q".into(), value, sigma: 0.5 * sigma_log * value, unit: unit.into() }
+}
