@@ -6,11 +6,16 @@ use tumble::diagnose::transfer::try_on;
 use tumble::diagnose::{Options, Outcome, diagnose};
 use tumble::recording::{BoxFaces, Metadata, Recording, Row, TurnStops};
 use tumble_sim::effect::Effect;
+use tumble_sim::motion::Hands;
 use tumble_sim::{Scheme, SchemeConfig};
 
 fn recording(scheme: Scheme, seed: u64, effect: Option<&str>) -> (Recording, tumble_sim::Truth) {
     let mut config = SchemeConfig::realistic(scheme, seed);
     config.effects = effect.map(|word| Effect::parse(word).expect("a known effect")).into_iter().collect();
+    made(&config)
+}
+
+fn made(config: &SchemeConfig) -> (Recording, tumble_sim::Truth) {
     let made = config.record().expect("a valid configuration");
     let row = |sample: &tumble_sim::Sample| Row {
         t_s: (sample.t_s * 1e6).round() / 1e6,
@@ -35,6 +40,16 @@ fn a_clean_recording_misses_nothing() {
     let diagnosis = ask(&recording, &[]).diagnosis;
     assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:?}");
     assert!(diagnosis.detection_limits.iter().any(|limit| limit.id == "gyro_g_sensitivity" && limit.limit < 0.03));
+}
+
+/// Where nothing trembles, the axes that do not turn read their own noise, which a regressor that takes the rate's sign
+/// explains: a dead zone of −0.05 °/s was found in every recording of this kind.
+#[test]
+fn axes_that_stand_still_in_turns_are_no_dead_zone() {
+    let mut config = SchemeConfig::new(Scheme::Double, 11);
+    config.world.motion.hands = Hands::machine();
+    let diagnosis = ask(&made(&config).0, &[]).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:?}");
 }
 
 #[test]
