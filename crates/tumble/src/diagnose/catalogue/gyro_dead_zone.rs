@@ -67,9 +67,7 @@ impl Motion {
         let about = |moment: &&Moment| (moment.mean_rate - mean).map(|v| v * v);
         let scatter = moments.iter().map(about).sum::<Vector3<f64>>() / count;
         let length_s = moments.last().map_or(0.0, |last| last.t_s) - moments.first().map_or(0.0, |first| first.t_s);
-        // Four sigma of a variance from that many windows: noise alone is not taken for a motion.
-        let chance = 1.0 + 4.0 * (2.0 / (length_s / WINDOW_S).max(1.0)).sqrt();
-        let believed = scatter.zip_map(noise, |all, noise| if all > chance * noise { 1.0 - noise / all } else { 0.0 });
+        let believed = scatter.zip_map(noise, |all, noise| believed(all, noise, length_s));
         Self { first: moments.first().map_or(0, |moment| moment.index), mean, believed }
     }
 
@@ -82,6 +80,13 @@ impl Motion {
         });
         Rate { likely, sigma, zero: moment.zero }
     }
+}
+
+/// `τ²/(τ² + σ_n²)` from the sum's mean square over so many seconds. Noise alone is not taken for a motion: four sigma of a
+/// variance from that many windows are asked for.
+fn believed(all: f64, noise: f64, length_s: f64) -> f64 {
+    let chance = 1.0 + 4.0 * (2.0 / (length_s / WINDOW_S).max(1.0)).sqrt();
+    if all > chance * noise { 1.0 - noise / all } else { 0.0 }
 }
 
 /// By stretch; rests have none.
@@ -140,7 +145,17 @@ fn clamped(mean: f64, sigma: f64, half_width: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::clamped;
+    use super::{believed, clamped};
+
+    /// An axis that reads its own noise in a turn loses nothing: at −1 to +3 sigma of its mean square over 60 windows.
+    #[test]
+    fn noise_alone_is_no_motion() {
+        for sigmas in [-1.0, 0.0, 3.0] {
+            assert_eq!(believed(1.0 + sigmas * (2.0f64 / 60.0).sqrt(), 1.0, 10.0), 0.0);
+        }
+        assert!((believed(10.0, 1.0, 10.0) - 0.9).abs() < 1e-12);
+        assert_eq!(believed(0.0, 0.0, 0.0), 0.0);
+    }
 
     /// Against the trapezoid over eight sigmas to either side.
     #[test]
