@@ -8,6 +8,7 @@ use super::generic::{Family, families};
 use super::ledger::{Fit, Ledger, Term, log_mean};
 use crate::diagnose::catalogue::{AtSize, Effect, Model, Parameter, STRUCTURAL};
 use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::column::Column;
 use crate::diagnose::twin::data::Raw;
 use crate::diagnose::twin::influence::Influence;
 use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
@@ -70,7 +71,7 @@ pub struct Bench {
     /// Readings as they were.
     pub original: Vec<Raw>,
     /// All columns.
-    pub influences: Vec<Influence>,
+    pub columns: Vec<Column>,
     /// In the catalogue's order.
     pub candidates: Vec<Candidate>,
     /// Shapes that detect.
@@ -88,11 +89,11 @@ pub struct Bench {
 impl Bench {
     /// All candidates for a twin, except those in `without`.
     pub fn new(twin: Twin, without: &[String]) -> Self {
-        let mut influences = Vec::new();
+        let mut all: Vec<Column> = Vec::new();
         let mut place = |more: Vec<Influence>| {
-            let first = influences.len();
-            influences.extend(more);
-            first..influences.len()
+            let first = all.len();
+            all.extend(more.into_iter().map(Column::from));
+            first..all.len()
         };
         let mut candidates = Vec::new();
         for effect in STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id)) {
@@ -127,7 +128,7 @@ impl Bench {
         Self {
             twin,
             original,
-            influences,
+            columns: all,
             candidates,
             families,
             accepted: Vec::new(),
@@ -139,7 +140,7 @@ impl Bench {
 
     /// Number of columns that belong to candidates; generic shapes come after.
     pub fn candidate_columns(&self) -> usize {
-        self.families.first().map_or(self.influences.len(), |(_, columns)| columns.start)
+        self.families.first().map_or(self.columns.len(), |(_, columns)| columns.start)
     }
 
     /// Terms of a variant, what is taken out of the samples counted.
@@ -188,14 +189,16 @@ impl Bench {
         if let Some((_, rows)) = self.made.iter().find(|(made, _)| *made == noise) {
             return rows.clone();
         }
-        let rows = std::sync::Arc::new(self.twin.rows(&self.influences[..self.candidate_columns()]));
+        let all: Vec<usize> = (0..self.candidate_columns()).collect();
+        let rows = std::sync::Arc::new(self.rows_of(&all));
         self.made.push((noise, rows.clone()));
         rows
     }
 
-    /// Fits the nominal anew; rows made before no longer hold.
+    /// Fits the nominal anew; what was made about the one before no longer holds.
     pub fn fit_nominal(&mut self) {
         self.made.clear();
+        self.columns.iter_mut().for_each(Column::forget);
         self.twin.fit();
     }
 
@@ -208,7 +211,7 @@ impl Bench {
             for accepted in &mut self.accepted {
                 let Some(placed) = self.candidates[accepted.candidate].variants.get(accepted.variant) else { continue };
                 for (i, column) in placed.columns.clone().enumerate() {
-                    if self.influences[column].reading().is_some() {
+                    if self.columns[column].influence.reading().is_some() {
                         accepted.taken[i] += fit.theta[next];
                     }
                     next += 1;
@@ -226,7 +229,7 @@ impl Bench {
             let Some(placed) = self.candidates[accepted.candidate].variants.get(accepted.variant) else { continue };
             let Some(at_size) = &placed.at_size else { continue };
             for (i, column) in placed.columns.clone().enumerate() {
-                self.influences[column] = at_size(i, accepted.taken[i]);
+                self.columns[column] = at_size(i, accepted.taken[i]).into();
             }
         }
     }
@@ -247,7 +250,7 @@ impl Bench {
             *raw = self.original[index];
             let Some(moment) = self.twin.trajectory.moments.get(index) else { continue };
             for &(column, taken) in columns {
-                if let Some(reading) = self.influences[column].reading() {
+                if let Some(reading) = self.columns[column].influence.reading() {
                     let push = reading(moment);
                     raw.rate -= push.rate * taken;
                     raw.force -= push.force * taken;
@@ -267,14 +270,13 @@ impl Bench {
 
     /// Rows that carry these columns alone, in this order, under the noise in force.
     pub fn rows_of(&mut self, columns: &[usize]) -> Rows {
-        // Influences are closures, which cannot be copied: they are lent to the pass and put back.
-        let lend = |&column: &usize| std::mem::replace(&mut self.influences[column], Influence::None);
-        let lent: Vec<Influence> = columns.iter().map(lend).collect();
-        let rows = self.twin.rows(&lent);
-        for (&column, influence) in columns.iter().zip(lent) {
-            self.influences[column] = influence;
+        for &column in columns {
+            if !self.columns[column].is_made() {
+                self.columns[column].make(&self.twin);
+            }
         }
-        rows
+        let columns: Vec<&Column> = columns.iter().map(|&column| &self.columns[column]).collect();
+        self.twin.rows(&columns)
     }
 
     /// Terms that put an accepted effect back at exactly the size at which it was taken out of the samples.

@@ -106,7 +106,7 @@ pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
     let first = bench.candidate_columns();
     let mut columns: Vec<usize> = accepted.iter().chain(&replaced).map(|term| term.column).collect();
     let given = columns.len();
-    columns.extend(first..bench.influences.len());
+    columns.extend(first..bench.columns.len());
     let rows = bench.rows_of(&columns);
     let ledger = Ledger::new(&rows, |_| true);
     let mut terms: Vec<Term> = accepted.iter().chain(&replaced).copied().collect();

@@ -46,8 +46,6 @@ pub type Reading = Box<dyn Fn(&Moment) -> Push + Send + Sync>;
 
 /// How a candidate's unit shows. The last number of each is SI per unit.
 pub enum Influence {
-    /// Nothing: lent to another pass.
-    None,
     /// In the readings, as smoothly as hands move.
     Reading(Reading),
     /// In the readings, so abruptly that every sample counts: with the sign of a trembling rate, say.

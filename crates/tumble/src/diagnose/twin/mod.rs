@@ -5,6 +5,7 @@
 //! independent standard normals, with every nuisance (calibration, attitude, lever arm, stops) already marginalised; a
 //! candidate effect of size θ shifts them by `responses · θ`. That makes every test a linear regression.
 
+pub mod column;
 pub mod data;
 pub mod edges;
 pub mod influence;
@@ -12,17 +13,19 @@ pub mod noise;
 pub mod rows;
 mod scatter;
 pub mod state;
+pub mod steps;
 pub mod trajectory;
 mod walk;
 
 use tumble_core::estimate::Conditions;
 use tumble_core::setup::{BoxFaces, TurnStops};
 
+use column::Column;
 use data::{Deed, Raw, Stretch};
-use influence::Influence;
 use noise::Noise;
 use rows::Rows;
 use state::State;
+use steps::Steps;
 use trajectory::{Nominal, Trajectory};
 
 /// Passes until nothing moves: each is a Gauss–Newton step from the device's result, which is near.
@@ -76,14 +79,13 @@ impl Prior {
 
 /// What a pass works on.
 struct Pass<'a> {
-    samples: &'a [Raw],
     stretches: &'a [Stretch],
     trajectory: &'a Trajectory,
+    steps: &'a Steps,
     nominal: &'a Nominal,
     noise: &'a Noise,
     force_scale: &'a [f64],
     prior: &'a Prior,
-    gravity_mps2: f64,
 }
 
 /// A recording with its fitted nominal sensor.
@@ -96,6 +98,8 @@ pub struct Twin {
     pub nominal: Nominal,
     /// About it.
     pub trajectory: Trajectory,
+    /// Of the filter, about it.
+    pub steps: Steps,
     /// In force.
     pub noise: Noise,
     /// How turns end.
@@ -125,6 +129,7 @@ impl Twin {
             stretches,
             nominal: start,
             trajectory,
+            steps: Steps::default(),
             noise,
             stops: conditions.stops,
             gravity_mps2,
@@ -157,12 +162,19 @@ impl Twin {
         5 * lying >= 4 * all
     }
 
+    /// Trajectory and steps about the nominal.
+    fn follow(&mut self) {
+        self.trajectory = Trajectory::new(&self.samples, &self.stretches, &self.nominal, self.gravity_mps2);
+        self.steps = Steps::new(&self.samples, &self.stretches, &self.trajectory, &self.nominal, self.gravity_mps2);
+    }
+
     /// Gauss–Newton from where it stands.
     pub fn fit(&mut self) {
+        self.follow();
         for _ in 0..PASSES {
             let (_, state) = self.pass(&[]);
             let step = self.take(&state);
-            self.trajectory = Trajectory::new(&self.samples, &self.stretches, &self.nominal, self.gravity_mps2);
+            self.follow();
             if step < 1e-9 {
                 break;
             }
@@ -181,23 +193,22 @@ impl Twin {
         (self.nominal.gyro - before.gyro).amax().max((self.nominal.accel - before.accel).amax())
     }
 
-    /// Rows about the nominal with the responses of all influences, and where the filter ended.
-    pub fn pass(&self, influences: &[Influence]) -> (Rows, State) {
+    /// Rows about the nominal with the responses of all columns, and where the filter ended.
+    fn pass(&self, columns: &[&Column]) -> (Rows, State) {
         let pass = Pass {
-            samples: &self.samples,
             stretches: &self.stretches,
             trajectory: &self.trajectory,
+            steps: &self.steps,
             nominal: &self.nominal,
             noise: &self.noise,
             force_scale: &self.force_scale,
             prior: &self.prior,
-            gravity_mps2: self.gravity_mps2,
         };
-        walk::Walk::new(&pass, influences).run()
+        walk::Walk::new(&pass, columns).run()
     }
 
-    /// Rows of the nominal with the responses of all influences.
-    pub fn rows(&self, influences: &[Influence]) -> Rows {
-        self.pass(influences).0
+    /// Rows of the nominal with the responses of columns that were made about it ([`Column::make`]).
+    pub fn rows(&self, columns: &[&Column]) -> Rows {
+        self.pass(columns).0
     }
 }

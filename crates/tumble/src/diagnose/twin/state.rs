@@ -32,17 +32,6 @@ pub const DRIVERS: usize = 15;
 /// How φ grows over a step: `φ ← φ + drive · (δM, δb, Ω)`.
 pub type Drive = SMatrix<f64, 3, DRIVERS>;
 
-/// What a candidate's unit does in a step.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Pushed {
-    /// To φ over the whole step.
-    pub attitude: [f64; 3],
-    /// To the mean calibrated rate at rest, rad/s.
-    pub rate: [f64; 3],
-    /// To the mean calibrated force less what attitude explains, m/s².
-    pub force: [f64; 3],
-}
-
 /// One scalar observation `residual = row · x + noise`.
 #[derive(Clone, Debug)]
 pub struct Observation {
@@ -111,22 +100,33 @@ impl State {
     }
 
     /// φ moves by `drive · (δM, δb, Ω)` and gains `variance` on every axis; `push` is what each candidate puts into φ.
-    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: &[Pushed]) {
-        let moved = drive * self.covariance.fixed_view::<DRIVERS, STATES>(GYRO, 0);
-        let mut rows = self.covariance.fixed_view_mut::<3, STATES>(ATTITUDE, 0);
-        rows += moved;
-        let moved = self.covariance.fixed_view::<STATES, DRIVERS>(0, GYRO) * drive.transpose();
-        let mut columns = self.covariance.fixed_view_mut::<STATES, 3>(0, ATTITUDE);
-        columns += moved;
+    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: impl Fn(usize) -> [f64; 3]) {
+        // Column by column, φ's three rows of each; then the mirror image into φ's three columns and their corner.
+        for column in self.covariance.as_mut_slice().chunks_exact_mut(STATES) {
+            let (attitude, rest) = column.split_at_mut(GYRO);
+            for (d, value) in rest[..DRIVERS].iter().enumerate() {
+                (0..3).for_each(|axis| attitude[axis] += drive[(axis, d)] * value);
+            }
+        }
+        for axis in 0..3 {
+            let mut moved = [0.0; STATES];
+            for d in 0..DRIVERS {
+                let column = &self.covariance.as_slice()[STATES * (GYRO + d)..STATES * (GYRO + d + 1)];
+                moved.iter_mut().zip(column).for_each(|(moved, value)| *moved += drive[(axis, d)] * value);
+            }
+            let column = &mut self.covariance.as_mut_slice()[STATES * axis..STATES * (axis + 1)];
+            column.iter_mut().zip(moved).for_each(|(value, moved)| *value += moved);
+        }
         for axis in 0..3 {
             self.covariance[(axis, axis)] += variance;
         }
         let moved = drive * self.mean.fixed_rows::<DRIVERS>(GYRO);
         let mut attitude = self.mean.fixed_rows_mut::<3>(ATTITUDE);
         attitude += moved;
-        for (column, push) in self.columns.iter_mut().zip(push) {
+        for (c, column) in self.columns.iter_mut().enumerate() {
+            let push = push(c);
             let driven: [f64; 3] = std::array::from_fn(|axis| {
-                (0..DRIVERS).map(|d| drive[(axis, d)] * column[GYRO + d]).sum::<f64>() + push.attitude[axis]
+                (0..DRIVERS).map(|d| drive[(axis, d)] * column[GYRO + d]).sum::<f64>() + push[axis]
             });
             (0..3).for_each(|axis| column[axis] += driven[axis]);
         }
@@ -160,15 +160,20 @@ impl State {
     /// Takes an observation in; `push` is what each candidate adds to the residual directly.
     pub fn observe(&mut self, observation: &Observation, push: impl Fn(usize) -> f64) -> Whitened {
         let mut gain = SVector::<f64, STATES>::zeros();
+        // By slices: nalgebra's `axpy` and `ger` walk with strides, three times slower.
         for &(index, coefficient) in &observation.row {
-            gain.axpy(coefficient, &self.covariance.column(index), 1.0);
+            let column = &self.covariance.as_slice()[STATES * index..STATES * (index + 1)];
+            gain.as_mut_slice().iter_mut().zip(column).for_each(|(gain, value)| *gain += coefficient * value);
         }
         let dot = |vector: &dyn Fn(usize) -> f64| observation.row.iter().map(|&(i, c)| c * vector(i)).sum::<f64>();
         let variance = dot(&|i| gain[i]) + observation.variance;
         let sigma = variance.sqrt();
         let innovation = observation.residual - dot(&|i| self.mean[i]);
         self.mean.axpy(innovation / variance, &gain, 1.0);
-        self.covariance.ger(-1.0 / variance, &gain, &gain, 1.0);
+        for (column, share) in self.covariance.as_mut_slice().chunks_exact_mut(STATES).zip(gain.as_slice()) {
+            let share = share / variance;
+            column.iter_mut().zip(gain.as_slice()).for_each(|(value, gain)| *value -= share * gain);
+        }
         let mut response = Vec::with_capacity(self.columns.len());
         for (c, column) in self.columns.iter_mut().enumerate() {
             let moved = observation.row.iter().map(|&(i, k)| k * column[i]).sum::<f64>() + push(c);

@@ -56,6 +56,8 @@ pub struct Moment {
     pub t_s: f64,
     /// `rotation_n_from_b`.
     pub attitude: UnitQuaternion<f64>,
+    /// The same as a matrix.
+    pub to_n: Matrix3<f64>,
     /// True rate by the nominal, rad/s, frame b.
     pub rate: Vector3<f64>,
     /// Its mean over a sixth of a second. An axis that hardly turns reads its own noise.
@@ -225,6 +227,7 @@ impl Walker<'_> {
             index,
             t_s: raw.t_s,
             attitude: self.attitude,
+            to_n: self.attitude.to_rotation_matrix().into_inner(),
             rate: if solid { Vector3::zeros() } else { rate },
             mean_rate,
             smooth_rate: standing_out(&mean_rate, &tremor),

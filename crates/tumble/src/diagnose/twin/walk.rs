@@ -3,24 +3,20 @@
 //! The physics is that of `docs/method.md` §4, in `f64`, from samples, with force residuals in frame b:
 //! `A (f − a) − Rᵀ g ẑ = −δA (f − a) + A δa + g Rᵀ (ẑ × φ) + L (l + pivot)`.
 
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use std::ops::Range;
+
+use nalgebra::{DMatrix, Vector3};
 use tumble_core::face::Face;
 use tumble_core::motion::path::WHOLE_TURN;
 
+use super::column::Column;
 use super::data::{Deed, Stretch};
 use super::influence::Influence;
 use super::rows::{Address, Class, Rows};
 use super::state::{self, Drive, Observation, State, Whitened};
+use super::steps::Step;
 use super::trajectory::Moment;
 use super::{Pass, noise};
-
-mod sums;
-
-use sums::Sums;
-
-/// Longest step in a turn and in a rest, s.
-const TURN_STEP_S: f64 = 0.25;
-const REST_STEP_S: f64 = 0.5;
 
 struct Visit {
     face: Face,
@@ -32,7 +28,7 @@ struct Visit {
 /// The pass's memory.
 pub(super) struct Walk<'a> {
     pass: &'a Pass<'a>,
-    influences: &'a [Influence],
+    columns: &'a [&'a Column],
     pub state: State,
     at: Vec<Address>,
     values: Vec<f64>,
@@ -47,11 +43,11 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    pub fn new(pass: &'a Pass<'a>, influences: &'a [Influence]) -> Self {
-        let state = pass.prior.apply(State::new(influences.len()), pass.nominal);
+    pub fn new(pass: &'a Pass<'a>, columns: &'a [&'a Column]) -> Self {
+        let state = pass.prior.apply(State::new(columns.len()), pass.nominal);
         Self {
             pass,
-            influences,
+            columns,
             state,
             at: Vec::new(),
             values: Vec::new(),
@@ -67,43 +63,39 @@ impl<'a> Walk<'a> {
     }
 
     pub fn run(mut self) -> (Rows, State) {
-        for (stretch, levelled) in self.pass.stretches.iter().zip(&self.pass.trajectory.levelled) {
+        let steps = self.pass.steps;
+        let stretches = self.pass.stretches.iter().zip(&steps.of_stretch);
+        for ((stretch, steps), levelled) in stretches.zip(&self.pass.trajectory.levelled) {
             if stretch.is_rest() {
-                self.rest(stretch, levelled);
+                self.rest(stretch, steps.clone(), levelled);
             } else {
-                self.motion(stretch);
+                self.motion(stretch, steps.clone());
             }
         }
-        let (rows, columns) = (self.values.len(), self.influences.len());
+        let (rows, columns) = (self.values.len(), self.columns.len());
         let responses = DMatrix::from_row_slice(rows, columns, &self.responses);
         (Rows { at: self.at, values: state::column(&self.values), responses, log_sigma: self.log_sigma }, self.state)
     }
 
-    fn rest(&mut self, stretch: &Stretch, levelled: &Vector3<f64>) {
+    fn rest(&mut self, stretch: &Stretch, steps: Range<usize>, levelled: &Vector3<f64>) {
         if !self.aligned || self.bridge {
             self.begin_chain();
         } else {
             self.state.relevel(levelled);
         }
         let solid = matches!(stretch.deed, Deed::Rest { .. });
-        let end = stretch.samples.end - 1;
-        let middle_s = 0.5 * (self.moment(stretch.samples.start).t_s + self.moment(end).t_s);
-        let mut first = stretch.samples.start;
-        while first < end {
-            let last = self.step_end(first, end, REST_STEP_S);
-            let sums = self.sums(first, last, stretch);
-            self.wander(self.moment(last).t_s, [1.0; 2]);
-            let late = 0.5 * (self.moment(first).t_s + self.moment(last).t_s) > middle_s;
+        for index in steps {
+            let step = &self.pass.steps.all[index];
+            self.wander(step.end_s, [1.0; 2]);
             if solid {
-                self.observe_rate(stretch, first, last, &sums, late);
+                self.observe_rate(stretch, index, step);
             }
-            self.observe_force(stretch, first, last, &sums, late);
+            self.observe_force(stretch, index, step);
             // On something solid the box turns with the Earth, and so does frame n: φ stands still.
             if !solid {
-                self.propagate(&sums);
+                self.propagate(index, step);
             }
             self.moved = false;
-            first = last;
         }
         self.stand(stretch);
     }
@@ -116,7 +108,7 @@ impl<'a> Walk<'a> {
         (self.aligned, self.bridge, self.moved, self.visit) = (true, false, false, None);
     }
 
-    fn motion(&mut self, stretch: &Stretch) {
+    fn motion(&mut self, stretch: &Stretch, steps: Range<usize>) {
         self.moved = true;
         self.bridge |= stretch.broken;
         let turn = matches!(stretch.deed, Deed::Turn { .. }) && !stretch.excluded;
@@ -130,34 +122,18 @@ impl<'a> Walk<'a> {
         if turn {
             self.state.reset(state::PIVOT, 3, noise::PIVOT_SIGMA_M);
         }
-        let end = stretch.samples.end - 1;
-        let middle_s = 0.5 * (self.moment(stretch.samples.start).t_s + self.moment(end).t_s);
-        let mut first = stretch.samples.start;
-        while first < end {
-            let last = self.step_end(first, end, TURN_STEP_S);
-            let sums = self.sums(first, last, stretch);
-            self.wander(self.moment(last).t_s, self.pass.noise.walk_in_motion);
+        for index in steps {
+            let step = &self.pass.steps.all[index];
+            self.wander(step.end_s, self.pass.noise.walk_in_motion);
             if turn && self.aligned && !self.bridge {
-                let late = 0.5 * (self.moment(first).t_s + self.moment(last).t_s) > middle_s;
-                self.observe_force(stretch, first, last, &sums, late);
+                self.observe_force(stretch, index, step);
             }
-            self.propagate(&sums);
-            first = last;
+            self.propagate(index, step);
         }
     }
 
-    pub(super) fn moment(&self, index: usize) -> &'a Moment {
+    fn moment(&self, index: usize) -> &'a Moment {
         &self.pass.trajectory.moments[index]
-    }
-
-    fn step_end(&self, first: usize, end: usize, step_s: f64) -> usize {
-        let limit_s = self.moment(first).t_s + step_s + 1e-6;
-        let mut last = first + 1;
-        while last < end && self.moment(last + 1).t_s <= limit_s {
-            last += 1;
-        }
-        // No crumb at the end.
-        if end - last < (last - first) / 2 { end } else { last }
     }
 
     fn wander(&mut self, now_s: f64, [gyro, accel]: [f64; 2]) {
@@ -167,74 +143,62 @@ impl<'a> Walk<'a> {
         self.state.wander(state::ACCEL_BIAS, 3, accel * self.pass.noise.force_walk * dt_s);
     }
 
-    fn propagate(&mut self, sums: &Sums) {
-        let variance = self.pass.noise.rate_density * self.pass.noise.motion_scale * sums.duration_s;
-        self.state.propagate(&sums.drive, variance, &sums.push);
+    fn propagate(&mut self, index: usize, step: &Step) {
+        let variance = self.pass.noise.rate_density * self.pass.noise.motion_scale * step.duration_s;
+        let columns = self.columns;
+        self.state.propagate(&step.drive, variance, |c| columns[c].pushed(index).attitude);
     }
 
-    fn observe_rate(&mut self, stretch: &Stretch, first: usize, last: usize, sums: &Sums, late: bool) {
-        let nominal = self.pass.nominal;
-        let mean = self.mean(first, last, |index| nominal.rate(&self.pass.samples[index]));
-        let to_b = self.moment(first).attitude.inverse().to_rotation_matrix().into_inner();
-        let residual = mean - to_b * nominal.earth;
-        let variance = self.pass.noise.rate_density / sums.duration_s;
+    fn observe_rate(&mut self, stretch: &Stretch, index: usize, step: &Step) {
+        let columns = self.columns;
+        let variance = self.pass.noise.rate_density / step.duration_s;
         for axis in 0..3 {
             // δM times a rate near zero is left out.
-            let observation = Observation::new(residual[axis], variance)
-                .with(state::GYRO_BIAS, nominal.gyro.row(axis).iter().copied())
-                .with(state::EARTH, to_b.row(axis).iter().copied());
-            let earth = |c: usize| match self.influences[c] {
-                Influence::Earth(along, unit) => unit * to_b[(axis, along)],
-                _ => sums.push[c].rate[axis],
-            };
+            let observation = Observation::new(step.rate[axis], variance)
+                .with(state::GYRO_BIAS, self.pass.nominal.gyro.row(axis).iter().copied())
+                .with(state::EARTH, step.to_b.row(axis).iter().copied());
             // Earth's influence on the residual: the true rate is there, `M (raw − b) = Rᵀ Ω`.
-            let whitened = self.state.observe(&observation, earth);
-            self.push(whitened, Class::RestRate, axis, stretch, (first, last), late);
+            let push = |c: usize| match columns[c].influence {
+                Influence::Earth(along, unit) => unit * step.to_b[(axis, along)],
+                _ => columns[c].pushed(index).rate[axis],
+            };
+            let whitened = self.state.observe(&observation, push);
+            self.push(whitened, Class::RestRate, axis, stretch, step.middle_s, step.late);
         }
     }
 
-    fn observe_force(&mut self, stretch: &Stretch, first: usize, last: usize, sums: &Sums, late: bool) {
-        let pass = self.pass;
-        let nominal = pass.nominal;
-        let gravity = pass.gravity_mps2;
-        let up = Vector3::z() * gravity;
-        let to_b = |index: usize| self.moment(index).attitude.inverse().to_rotation_matrix().into_inner();
+    fn observe_force(&mut self, stretch: &Stretch, index: usize, step: &Step) {
+        let columns = self.columns;
         let turning = matches!(stretch.deed, Deed::Turn { .. });
-        let residual = self.mean(first, last, |i| nominal.force(&pass.samples[i]) - to_b(i) * up);
-        // The coefficients of δA by prediction, not as measured: noise that stands in residual and coefficient alike would
-        // pass for information about elements of which nothing is known yet.
-        let inverse = nominal.accel.try_inverse().unwrap_or_else(Matrix3::identity);
-        let raw = inverse * self.mean(first, last, |i| to_b(i) * up);
-        let tilt = self.mean_matrix(first, last, |i| to_b(i) * Vector3::z().cross_matrix() * gravity);
-        let lever = self.mean_matrix(first, last, |i| lever(self.moment(i)));
-        let scale = pass.force_scale.get(stretch.number).copied().unwrap_or(1.0);
-        let variance = pass.noise.force_density * scale / sums.duration_s;
-        let drift = if matches!(stretch.deed, Deed::Rest { .. }) { Drive::zeros() } else { tilt * sums.mean_drive };
+        let scale = self.pass.force_scale.get(stretch.number).copied().unwrap_or(1.0);
+        let variance = self.pass.noise.force_density * scale / step.duration_s;
+        let drift =
+            if matches!(stretch.deed, Deed::Rest { .. }) { Drive::zeros() } else { step.tilt * step.mean_drive };
         let class = match (turning, self.moved) {
             (true, _) => Class::TurnForce,
             (false, true) => Class::Hinge,
             (false, false) => Class::RestForce,
         };
-        let late = if class == Class::Hinge { self.alternating() } else { late };
+        let late = if class == Class::Hinge { self.alternating() } else { step.late };
         for axis in 0..3 {
-            let mut observation = Observation::new(residual[axis], variance)
-                .with(state::ATTITUDE, tilt.row(axis).iter().copied())
-                .with(state::ACCEL_BIAS, nominal.accel.row(axis).iter().copied())
-                .with(state::ACCEL + 3 * axis, (-raw).iter().copied());
+            let mut observation = Observation::new(step.force[axis], variance)
+                .with(state::ATTITUDE, step.tilt.row(axis).iter().copied())
+                .with(state::ACCEL_BIAS, self.pass.nominal.accel.row(axis).iter().copied())
+                .with(state::ACCEL + 3 * axis, (-step.gravity).iter().copied());
             if turning || drift != Drive::zeros() {
                 observation = observation.with(state::GYRO, drift.row(axis).iter().copied());
             }
             if turning {
                 observation = observation
-                    .with(state::LEVER, lever.row(axis).iter().copied())
-                    .with(state::PIVOT, lever.row(axis).iter().copied());
+                    .with(state::LEVER, step.lever.row(axis).iter().copied())
+                    .with(state::PIVOT, step.lever.row(axis).iter().copied());
             }
-            let push = |c: usize| match self.influences[c] {
-                Influence::Lever(along, unit) if turning => unit * lever[(axis, along)],
-                _ => sums.push[c].force[axis],
+            let push = |c: usize| match columns[c].influence {
+                Influence::Lever(along, unit) if turning => unit * step.lever[(axis, along)],
+                _ => columns[c].pushed(index).force[axis],
             };
             let whitened = self.state.observe(&observation, push);
-            self.push(whitened, class, 3 + axis, stretch, (first, last), late);
+            self.push(whitened, class, 3 + axis, stretch, step.middle_s, late);
         }
     }
 
@@ -252,7 +216,8 @@ impl<'a> Walk<'a> {
         };
         let normal_n = attitude * face.normal().cast::<f64>();
         let sigma = self.pass.noise.stop_sigma_rad;
-        let span = (stretch.samples.start, stretch.samples.end - 1);
+        let samples = &stretch.samples;
+        let middle_s = 0.5 * (self.moment(samples.start).t_s + self.moment(samples.end - 1).t_s);
         let fresh = match self.visit.take().filter(|visit| visit.face == face) {
             None => {
                 self.state.clone_heading(&normal_n, sigma);
@@ -260,6 +225,7 @@ impl<'a> Walk<'a> {
                 true
             }
             Some(mut visit) => {
+                let columns = self.columns;
                 let left = (attitude * visit.first.inverse()).scaled_axis().dot(&normal_n);
                 let turned = visit.turned_rad.abs();
                 if turned > std::f64::consts::PI && left.abs() < f64::from(WHOLE_TURN) {
@@ -268,7 +234,7 @@ impl<'a> Walk<'a> {
                         .with(state::ATTITUDE, (-normal_n).iter().copied())
                         .with(state::FENCE, [1.0]);
                     let turn = visit.last_turn;
-                    let ends = |c: usize| match &self.influences[c] {
+                    let ends = |c: usize| match &columns[c].influence {
                         Influence::Stop(turns) => {
                             turns.iter().filter(|(stretch, _)| *stretch == turn).map(|(_, unit)| unit).sum()
                         }
@@ -276,7 +242,7 @@ impl<'a> Walk<'a> {
                     };
                     let whitened = self.state.observe(&observation, ends);
                     let late = self.alternating();
-                    self.push(whitened, Class::Closure, face.axis(), stretch, span, late);
+                    self.push(whitened, Class::Closure, face.axis(), stretch, middle_s, late);
                 }
                 self.visit = Some(visit);
                 false
@@ -286,65 +252,35 @@ impl<'a> Walk<'a> {
             if fresh {
                 self.state.reset(state::FACET, 2, facet);
             }
-            self.plate(stretch, face, &normal_n, span);
+            self.plate(stretch, face, &normal_n, middle_s);
         }
     }
 
     /// `(R n)ₓᵧ = −(φ × R n)ₓᵧ + p − (R e)ₓᵧ`.
-    fn plate(&mut self, stretch: &Stretch, face: Face, normal_n: &Vector3<f64>, span: (usize, usize)) {
-        let attitude = self.moment(span.1).attitude;
+    fn plate(&mut self, stretch: &Stretch, face: Face, normal_n: &Vector3<f64>, middle_s: f64) {
+        let end = self.moment(stretch.samples.end - 1);
+        let (attitude, t_s) = (end.attitude, end.t_s);
         let along = |k: usize| attitude * Vector3::ith((face.axis() + k) % 3, 1.0);
         let cross = normal_n.cross_matrix();
-        let t_s = self.moment(span.1).t_s;
-        let late = self.alternating();
+        let (columns, late) = (self.columns, self.alternating());
         for axis in 0..2 {
             let observation = Observation::new(normal_n[axis], noise::CONTACT_SIGMA_RAD.powi(2))
                 .with(state::ATTITUDE, cross.row(axis).iter().copied())
                 .with(state::TABLE + axis, [1.0])
                 .with(state::FACET, [-along(1)[axis], -along(2)[axis]]);
-            let leans = |c: usize| match self.influences[c] {
+            let leans = |c: usize| match columns[c].influence {
                 Influence::Table(from_s, n, unit) if n == axis && t_s > from_s => unit,
                 _ => 0.0,
             };
             let whitened = self.state.observe(&observation, leans);
-            self.push(whitened, Class::Plate, axis, stretch, span, late);
+            self.push(whitened, Class::Plate, axis, stretch, middle_s, late);
         }
     }
 
-    fn push(
-        &mut self,
-        whitened: Whitened,
-        class: Class,
-        channel: usize,
-        stretch: &Stretch,
-        (first, last): (usize, usize),
-        late: bool,
-    ) {
-        let t_s = 0.5 * (self.moment(first).t_s + self.moment(last).t_s);
+    fn push(&mut self, whitened: Whitened, class: Class, channel: usize, stretch: &Stretch, t_s: f64, late: bool) {
         self.at.push(Address { class, channel, stretch: stretch.number, t_s, late });
         self.values.push(whitened.value);
         self.log_sigma += whitened.sigma.ln();
         self.responses.extend(whitened.response);
     }
-
-    fn mean(&self, first: usize, last: usize, f: impl Fn(usize) -> Vector3<f64>) -> Vector3<f64> {
-        let (mut sum, mut time) = (Vector3::zeros(), 0.0);
-        for index in first..last {
-            let dt_s = self.moment(index + 1).t_s - self.moment(index).t_s;
-            sum += (f(index) + f(index + 1)) * (0.5 * dt_s);
-            time += dt_s;
-        }
-        sum / time
-    }
-
-    fn mean_matrix(&self, first: usize, last: usize, f: impl Fn(usize) -> Matrix3<f64>) -> Matrix3<f64> {
-        let sum: Matrix3<f64> = (first..=last).map(f).sum();
-        sum / (last + 1 - first) as f64
-    }
-}
-
-/// `[ω×]² + [ω̇×]`.
-fn lever(moment: &Moment) -> Matrix3<f64> {
-    let rate = moment.rate.cross_matrix();
-    rate * rate + moment.acceleration.cross_matrix()
 }
