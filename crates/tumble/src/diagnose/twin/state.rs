@@ -100,7 +100,7 @@ impl State {
     }
 
     /// φ moves by `drive · (δM, δb, Ω)` and gains `variance` on every axis; `push` is what each candidate puts into φ.
-    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: impl Fn(usize) -> [f64; 3]) {
+    pub fn propagate(&mut self, drive: &Drive, variance: f64, push: impl Fn(usize) -> Vector3<f64>) {
         // Column by column, φ's three rows of each; then the mirror image into φ's three columns and their corner.
         for column in self.covariance.as_mut_slice().chunks_exact_mut(STATES) {
             let (attitude, rest) = column.split_at_mut(GYRO);

@@ -2,16 +2,22 @@
 //! nominal; every pass, at any noise and for any candidates, reads them.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::Twin;
 use super::data::{Deed, Raw, Stretch};
+use super::nodes::{Node, nodes, trapezoid_s};
 use super::state::Drive;
 use super::trajectory::{Moment, Nominal, Trajectory};
 
 /// Longest step in a turn and in a rest, s.
 const TURN_STEP_S: f64 = 0.25;
 const REST_STEP_S: f64 = 0.5;
+
+/// Smooth candidates are evaluated about this often in a second: hands move below 12 Hz.
+const NODES_HZ: f64 = 50.0;
 
 /// One step. What its stretch does not need is zero.
 #[derive(Clone, Debug)]
@@ -51,12 +57,14 @@ pub struct Step {
 }
 
 /// All of them.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub struct Steps {
     /// In order of time.
     pub all: Vec<Step>,
     /// Which belong to each stretch.
     pub of_stretch: Vec<Range<usize>>,
+    smooth: OnceLock<Vec<Vec<Node>>>,
+    every: OnceLock<Vec<Vec<Node>>>,
 }
 
 /// What steps are summed over.
@@ -91,6 +99,16 @@ impl Steps {
             steps.of_stretch.push(begin..steps.all.len());
         }
         steps
+    }
+
+    /// Where smooth candidates are evaluated, step by step.
+    pub fn smooth(&self, twin: &Twin) -> &[Vec<Node>] {
+        self.smooth.get_or_init(|| nodes(twin, NODES_HZ))
+    }
+
+    /// Where those are that change from sample to sample.
+    pub fn every(&self, twin: &Twin) -> &[Vec<Node>] {
+        self.every.get_or_init(|| nodes(twin, f64::INFINITY))
     }
 }
 
@@ -178,15 +196,6 @@ impl Ground<'_> {
 fn mean_matrix(first: usize, last: usize, f: impl Fn(usize) -> Matrix3<f64>) -> Matrix3<f64> {
     let sum: Matrix3<f64> = (first..=last).map(f).sum();
     sum / (last + 1 - first) as f64
-}
-
-/// The time that a sample stands for when every `stride`-th of a step's is taken: half of what lies on either side.
-pub(super) fn trapezoid_s(moments: &[Moment], (first, last): (usize, usize), index: usize, stride: usize) -> f64 {
-    // The last stride may be shorter.
-    let previous = if index == last { last - 1 - (last - first - 1) % stride } else { index.saturating_sub(stride) };
-    let before_s = if index > first { moments[index].t_s - moments[previous].t_s } else { 0.0 };
-    let next = (index + stride).min(last);
-    0.5 * (before_s + moments[next].t_s - moments[index].t_s)
 }
 
 /// `[ω×]² + [ω̇×]`.
