@@ -1,10 +1,14 @@
-//! Evidence of a linear model of the rows, from sums of products that are formed once.
+//! Evidence of a linear model of the rows, from sums of products that are formed once, each when it is first asked for: of a
+//! thousand columns' products a search needs some in a thousand.
 //!
 //! Rows `e = E θ + noise`, prior `θ ~ N(m, diag(w²))`. In each class of rows the noise's sigma is 1, or larger if the rows
 //! themselves say so: it is maximised over `s ≥ 1`, so that a class that scatters more than the model believes costs
 //! every candidate alike and passes for no effect. For the rest θ is integrated out exactly:
 //!
 //! `ln p = −½ Σ_c [N_c ln s_c² + RSS_c / s_c²] − ½ Σ (θ̂−m)²/w² − ½ ln det(I + W Eᵀ S⁻² E) − Σ ln σ`.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,17 +17,23 @@ use crate::diagnose::twin::rows::{Address, Class, Rows};
 /// Rounds of weights and estimates: the weights settle geometrically.
 const ROUNDS: usize = 4;
 
-struct Sums {
+/// Number of [`Class::ALL`].
+const CLASSES: usize = 6;
+
+/// The rows of one class.
+struct Share {
     count: f64,
     squares: f64,
+    responses: DMatrix<f64>,
     moments: DVector<f64>,
-    gram: DMatrix<f64>,
 }
 
 /// Products of rows and responses, class by class.
 pub struct Ledger {
-    classes: Vec<Sums>,
+    classes: [Share; CLASSES],
     log_sigma: f64,
+    /// `Eᵢᵀ Eⱼ` of columns i ≤ j.
+    products: RefCell<HashMap<(usize, usize), [f64; CLASSES]>>,
 }
 
 /// One column of a model.
@@ -47,7 +57,7 @@ pub struct Fit {
     /// Its covariance.
     pub covariance: DMatrix<f64>,
     /// s² of every class, in the order of [`Class::ALL`].
-    pub scales: [f64; 6],
+    pub scales: [f64; CLASSES],
 }
 
 impl Ledger {
@@ -58,14 +68,16 @@ impl Ledger {
                 (0..rows.at.len()).filter(|&i| rows.at[i].class == class && keep(&rows.at[i])).collect();
             let responses = rows.responses.select_rows(&chosen);
             let values = rows.values.select_rows(&chosen);
-            Sums {
-                count: chosen.len() as f64,
-                squares: values.norm_squared(),
-                moments: responses.tr_mul(&values),
-                gram: responses.transpose() * &responses,
-            }
+            let moments = responses.tr_mul(&values);
+            Share { count: chosen.len() as f64, squares: values.norm_squared(), responses, moments }
         });
-        Self { classes: classes.into(), log_sigma: rows.log_sigma }
+        Self { classes, log_sigma: rows.log_sigma, products: RefCell::default() }
+    }
+
+    fn product(&self, i: usize, j: usize) -> [f64; CLASSES] {
+        let key = (i.min(j), i.max(j));
+        let made = || self.classes.each_ref().map(|share| share.responses.column(i).dot(&share.responses.column(j)));
+        *self.products.borrow_mut().entry(key).or_insert_with(made)
     }
 
     /// The model of these terms; an empty one is the null.
@@ -75,7 +87,7 @@ impl Ledger {
             evidence: f64::NEG_INFINITY,
             theta: DVector::zeros(n),
             covariance: DMatrix::zeros(n, n),
-            scales: [1.0; 6],
+            scales: [1.0; CLASSES],
         };
         let (grams, moments) = self.chosen(terms);
         for round in 0..ROUNDS {
@@ -86,7 +98,7 @@ impl Ledger {
                 .map(|(term, theta)| ((theta - term.mean) / term.width).powi(2))
                 .sum();
             let mut evidence = -0.5 * prior - 0.5 * log_det - self.log_sigma;
-            let mut scales = [1.0; 6];
+            let mut scales = [1.0; CLASSES];
             for (k, class) in self.classes.iter().enumerate() {
                 let left = class.squares - 2.0 * fit.theta.dot(&moments[k]) + fit.theta.dot(&(&grams[k] * &fit.theta));
                 scales[k] = (left / class.count.max(1.0)).max(1.0);
@@ -101,24 +113,25 @@ impl Ledger {
     }
 
     /// Weighted `EᵀE` of two sets of columns, at these scales.
-    pub fn gram(&self, scales: &[f64; 6], rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-        let mut sum = DMatrix::zeros(rows.len(), columns.len());
-        for (class, scale) in self.classes.iter().zip(scales) {
-            sum += DMatrix::from_fn(rows.len(), columns.len(), |i, j| class.gram[(rows[i], columns[j])] / scale);
-        }
-        sum
+    pub fn gram(&self, scales: &[f64; CLASSES], rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| {
+            self.product(rows[i], columns[j]).iter().zip(scales).map(|(product, scale)| product / scale).sum()
+        })
     }
 
     fn chosen(&self, terms: &[Term]) -> (Vec<DMatrix<f64>>, Vec<DVector<f64>>) {
         let n = terms.len();
-        let column = |i: usize| terms[i].column;
-        self.classes
-            .iter()
-            .map(|class| {
-                let gram = DMatrix::from_fn(n, n, |i, j| class.gram[(column(i), column(j))]);
-                (gram, DVector::from_fn(n, |i, _| class.moments[column(i)]))
-            })
-            .unzip()
+        let mut grams = vec![DMatrix::zeros(n, n); CLASSES];
+        for i in 0..n {
+            for j in i..n {
+                let product = self.product(terms[i].column, terms[j].column);
+                for (gram, product) in grams.iter_mut().zip(product) {
+                    (gram[(i, j)], gram[(j, i)]) = (product, product);
+                }
+            }
+        }
+        let moments = self.classes.iter().map(|share| DVector::from_fn(n, |i, _| share.moments[terms[i].column]));
+        (grams, moments.collect())
     }
 }
 
