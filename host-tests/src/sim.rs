@@ -1,9 +1,9 @@
 //! Simulated sessions through the device's own code, and their errors against the truth.
 
-use tumble_core::estimate::{Conditions, Estimate, Estimator, Progress};
-use tumble_core::motion::segmenter::Segmenter;
+use tumble::settle;
+use tumble::study::trial::readings;
+use tumble_core::estimate::{Conditions, Estimate};
 use tumble_core::procedure::{BoxFaces, TurnStops};
-use tumble_core::sample::Sample;
 use tumble_core::tape::Tape;
 use tumble_sim::SchemeConfig;
 use tumble_sim::sensor::FrameTruth;
@@ -36,18 +36,7 @@ pub struct Deviation {
 pub fn record(config: &SchemeConfig) -> (Box<Memory>, tumble_sim::Truth) {
     let recording = config.record().expect("a valid configuration");
     let mut tape = Box::new(Memory::new());
-    let mut segmenter = Segmenter::new(1.0);
-    for sample in &recording.samples {
-        let sample = Sample {
-            t_us: (sample.t_s * 1e6).round() as u64,
-            angular_rate_rad_s: sample.angular_rate_rad_s.cast(),
-            specific_force_mps2: sample.specific_force_mps2.cast(),
-            temperature_degc: sample.temperature_degc as f32,
-        };
-        tape.note_temperature(sample.temperature_degc);
-        segmenter.step(&sample, 0, &mut tape);
-    }
-    segmenter.finish(&mut tape);
+    settle::record(&readings(&recording.samples), 1.0, &mut tape);
     (tape, recording.truth)
 }
 
@@ -55,13 +44,7 @@ pub fn record(config: &SchemeConfig) -> (Box<Memory>, tumble_sim::Truth) {
 pub fn session(config: &SchemeConfig, stops: TurnStops, faces: BoxFaces) -> Session {
     let (tape, truth) = record(config);
     let conditions = Conditions { stops, faces, gravity_mps2: config.world.gravity_mps2 as f32 };
-    let mut estimator = Box::new(Estimator::new(&tape, conditions));
-    let estimate = loop {
-        match estimator.work(&tape, 64).expect("the arithmetic holds") {
-            Progress::Working(_) => {}
-            Progress::Done(estimate) => break estimate,
-        }
-    };
+    let (estimate, _) = settle::estimate(&tape, conditions, &mut |_| {}).expect("the arithmetic holds");
     let truth = if faces == BoxFaces::Square { truth.in_box } else { truth.in_accelerometer_frame };
     Session { estimate, tape, truth }
 }

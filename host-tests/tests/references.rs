@@ -1,7 +1,7 @@
 //! The device's `f32` passes against the references in `f64` on the same sessions.
 
 use nalgebra::Matrix3;
-use tumble::calibrate::{Method, Session, estimate};
+use tumble::calibrate::{Method, Session};
 use tumble::reference::batch::{self, Batch, MeanNoise};
 use tumble::reference::data::{self, Stretch};
 use tumble::study::trial::readings;
@@ -41,8 +41,9 @@ fn solve(scheme: Scheme, seed: u64, faces: BoxFaces) -> Solutions {
     let readings = readings(&recording.samples);
     let conditions = conditions(faces);
     let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions };
-    let (tape, _) = session.tape(1.0);
-    let (device, noise) = estimate(&tape, conditions, &mut |_| {}).expect("an estimate");
+    let settled = session.settle_at(1.0, &mut |_| {});
+    let tape = settled.tape;
+    let (device, noise) = settled.estimate.expect("an estimate");
     let bias = device.calibration.gyroscope.triad.bias.cast();
     let [records, samples] = [data::records(&tape, &bias), data::stretches(tape.segments(), &readings)];
     let solve = |stretches: &[Stretch], mean_noise| {

@@ -33,7 +33,7 @@ fn limits_widen_only_where_rests_tremble_and_it_is_said() {
     for (rms_dps, widened) in [(0.0, false), (1.2, true)] {
         let (readings, truth) = trembling(rms_dps);
         let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions: conditions() };
-        assert_eq!(session.tolerance() > 1.0, widened, "{rms_dps} deg/s");
+        assert_eq!(session.settle(&mut |_| {}).trembles(), widened, "{rms_dps} deg/s");
         let outcome = session.run(Method::Device, &mut |_| {});
         assert_ne!(outcome.verdict, Verdict::Rejected, "{rms_dps} deg/s: {:?}", outcome.reasons);
         assert_eq!(outcome.reasons.iter().any(|reason| reason.contains("tremble")), widened, "{:?}", outcome.reasons);
@@ -51,5 +51,5 @@ fn what_is_not_for_want_of_rests_does_not_widen_them() {
     let (mut readings, _) = trembling(0.0);
     readings.truncate(20 * 200);
     let session = Session { readings: &readings, origin_s: 0.0, lost: 0, conditions: conditions() };
-    assert_eq!(session.tolerance(), 1.0, "twenty seconds on one face give no result under any limits");
+    assert!(!session.settle(&mut |_| {}).trembles(), "twenty seconds on one face give no result under any limits");
 }

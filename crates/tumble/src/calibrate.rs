@@ -3,31 +3,15 @@
 
 use nalgebra::SMatrix;
 use tumble_core::calibration::{Calibration, Judgement, Reason, Verdict};
-use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::two_step;
-use tumble_core::estimate::{Conditions, Estimate, Estimator, PARAMETERS, Progress, judge};
-use tumble_core::motion::MotionEvent;
-use tumble_core::motion::segmenter::Segmenter;
+use tumble_core::estimate::{Conditions, Estimate, PARAMETERS, judge};
 use tumble_core::procedure::BoxFaces;
-use tumble_core::tape::{Exclusion, Kind, Segment, Tape};
+use tumble_core::tape::{Exclusion, Kind, Segment};
 
 use crate::output::SegmentReport;
 use crate::recording::{Metadata, Reading};
 use crate::reference;
-
-/// Room for fifty minutes of motion (20 records a second), where the board has room for the session that it guides;
-/// nothing else differs.
-const RECORDS: usize = 60_000;
-const SEGMENTS: usize = 1024;
-/// Stillness limits, in units of the board's, tried until a session gives a result. The board's admit a trembling of three
-/// times the sensor's noise (0.3 °/s) and tell a person to let go; a recording cannot be told, and a hand's tremor of
-/// 0.05° at 8–12 Hz (Elble & Koller 1990) is 3 °/s. Four times is where slow motion begins to pass for rest.
-const TOLERANCES: [f32; 3] = [1.0, 2.0, 4.0];
-/// Records walked between two signs of life.
-const SLICE: usize = 64;
-
-/// The tape of a host.
-pub type HostTape = Tape<RECORDS, SEGMENTS>;
+use crate::settle::{self, HostTape};
 
 /// What computes the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,15 +75,19 @@ impl Session<'_> {
             Method::TwoStep(_) => Conditions { faces: BoxFaces::Square, ..self.conditions },
             Method::Device | Method::Batch => self.conditions,
         };
-        let tolerance = self.tolerance();
-        let (tape, full_s) = self.tape(tolerance);
-        let estimate = estimate(&tape, conditions, progress).and_then(|(mut estimate, noise)| {
+        let settled = self.settle(progress);
+        let tape = &settled.tape;
+        let first = match conditions == self.conditions {
+            true => settled.estimate.clone(),
+            false => settle::estimate(tape, conditions, progress),
+        };
+        let estimate = first.and_then(|(mut estimate, noise)| {
             let found = match method {
                 Method::Device => return Ok(estimate),
-                Method::Batch => reference::batch(&tape, self.readings, &conditions, &estimate, &noise),
-                Method::Gravity => reference::gravity(&tape, self.readings, &conditions, &estimate),
+                Method::Batch => reference::batch(tape, self.readings, &conditions, &estimate, &noise),
+                Method::Gravity => reference::gravity(tape, self.readings, &conditions, &estimate),
                 Method::TwoStep(variant) => {
-                    let found = two_step::estimate::<f32, _, _>(&tape, &conditions, variant);
+                    let found = two_step::estimate::<f32, _, _>(tape, &conditions, variant);
                     let found = found.map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })?;
                     Some((found.calibration, estimate.covariance))
                 }
@@ -108,52 +96,19 @@ impl Session<'_> {
             Ok(estimate)
         });
         let covariance = estimate.as_ref().ok().filter(|_| !matches!(method, Method::TwoStep(_))).map(|e| e.covariance);
-        let mut outcome = self.judged(&tape, estimate);
+        let mut outcome = self.judged(tape, estimate);
         outcome.covariance = covariance;
-        if let Some(full_s) = full_s {
+        if let Some(full_us) = settled.full_us {
+            let full_s = seconds(full_us, self.origin_s);
             outcome.warn(format!("The session's memory was full at {full_s:.1} s: what came later was left out."));
         }
-        if tolerance > TOLERANCES[0] {
+        if settled.trembles() {
+            let tolerance = settled.tolerance;
             outcome.warn(format!(
                 "The rests tremble: they were found with limits {tolerance} times the board's. Put the sensor down and let go at each."
             ));
         }
         outcome
-    }
-
-    /// The narrowest stillness limits under which nothing is said for want of rests; else the narrowest with a result that
-    /// the judge does not reject; else the board's own, 1.
-    pub fn tolerance(&self) -> f32 {
-        let mut usable = None;
-        for tolerance in TOLERANCES {
-            let (tape, _) = self.tape(tolerance);
-            let Ok((estimate, _)) = estimate(&tape, self.conditions, &mut |_| {}) else { continue };
-            let judgement = judge::judge(&estimate, &tape, self.lost).0;
-            let accepted = judgement.verdict != Verdict::Rejected;
-            let content = !judgement.reasons.iter().any(wants_rest);
-            if content {
-                return if accepted { tolerance } else { usable.unwrap_or(TOLERANCES[0]) };
-            }
-            usable = usable.or(accepted.then_some(tolerance));
-        }
-        usable.unwrap_or(TOLERANCES[0])
-    }
-
-    /// Everything onto a tape with the stillness limits at `tolerance` times the usual; if it was full before the end,
-    /// when.
-    pub fn tape(&self, tolerance: f32) -> (Box<HostTape>, Option<f64>) {
-        let mut tape = Box::new(HostTape::new());
-        let mut segmenter = Segmenter::new(tolerance);
-        let mut full_s = None;
-        for reading in self.readings {
-            let events = segmenter.step(&reading.sample, reading.clipped, &mut tape);
-            tape.note_temperature(reading.sample.temperature_degc);
-            if events.contains(&MotionEvent::TapeFull) {
-                full_s = Some(seconds(reading.sample.t_us, self.origin_s));
-            }
-        }
-        segmenter.finish(&mut tape);
-        (tape, full_s)
     }
 
     fn judged(&self, tape: &HostTape, estimate: Result<Estimate, Reason>) -> Outcome {
@@ -182,18 +137,6 @@ impl Outcome {
     }
 }
 
-/// Reasons that rests not recognised as such bring about.
-const fn wants_rest(reason: &Reason) -> bool {
-    matches!(
-        reason,
-        Reason::FacesMissing { .. }
-            | Reason::TurnsMissing { .. }
-            | Reason::NotObservable { .. }
-            | Reason::Uncertain { .. }
-            | Reason::BiasDrift { .. }
-    )
-}
-
 /// What the estimator left out by itself stands among the reasons only.
 fn mark_excluded(segments: &mut [SegmentReport], judgement: &Judgement) {
     for reason in &judgement.reasons {
@@ -202,24 +145,6 @@ fn mark_excluded(segments: &mut [SegmentReport], judgement: &Judgement) {
         {
             segment.used = false;
             segment.why = why(Exclusion::Outlier).into();
-        }
-    }
-}
-
-/// The device's estimate over a tape, with what it found of each segment's noise.
-///
-/// # Errors
-/// If the arithmetic breaks down.
-pub fn estimate(
-    tape: &HostTape,
-    conditions: Conditions,
-    progress: &mut impl FnMut(f32),
-) -> Result<(Estimate, Vec<SegmentNoise>), Reason> {
-    let mut estimator = Box::new(Estimator::new(tape, conditions));
-    loop {
-        match estimator.work(tape, SLICE).map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })? {
-            Progress::Working(share) => progress(share.min(1.0)),
-            Progress::Done(estimate) => return Ok((estimate, estimator.segment_noise().to_vec())),
         }
     }
 }

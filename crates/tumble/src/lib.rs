@@ -14,5 +14,6 @@ pub mod output;
 pub mod recording;
 pub mod reference;
 pub mod serial;
+pub mod settle;
 pub mod simulate;
 pub mod study;

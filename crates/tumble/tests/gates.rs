@@ -38,7 +38,7 @@ fn gates(recording: &Recording) -> Gated {
         lost: inference.missing(),
         conditions: conditions(&recording.metadata),
     };
-    let (tape, _) = session.tape(1.0);
+    let tape = session.settle_at(1.0, &mut |_| {}).tape;
     let samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
     examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments() })
 }

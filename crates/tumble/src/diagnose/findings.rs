@@ -21,6 +21,8 @@ pub struct Finding {
     pub found: Found,
     /// Its share in every row of `rows`.
     pub signal: Vec<f64>,
+    /// A bias that wanders: it stands for whatever changes with time.
+    pub is_walk: bool,
 }
 
 /// All accepted effects, the strongest first.
@@ -76,7 +78,7 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
         held_out,
         other_recordings: Vec::new(),
     };
-    Finding { found, signal }
+    Finding { found, signal, is_walk: walk.is_some() }
 }
 
 /// Other effects in its place, by how much less they explain.

@@ -3,7 +3,7 @@
 use tumble_core::estimate::Conditions;
 
 use super::gates::{self, Gated, Scene};
-use super::prepare::{Prepared, prepare_samples};
+use super::prepare::{Prepared, prepare_settled};
 use super::twin::data::Raw;
 use crate::calibrate::{self, Session};
 use crate::recording::{Inference, Reading, Recording};
@@ -27,16 +27,18 @@ pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
     let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
     let lost = inference.missing();
     let session = Session { readings: &readings, origin_s, lost, conditions };
-    let (tape, _) = session.tape(session.tolerance());
-    let gated =
-        gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments() });
+    let mut settled = session.settle(&mut |_| {});
+    let segments = settled.tape.segments();
+    let gated = gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments });
     if let Some(stop) = &gated.stop {
         let prepared = Err(stop.clone());
         return Intake { gated, conditions, prepared };
     }
-    repair(&mut samples, &mut readings, &gated);
-    let masked = masked(&gated);
-    let prepared = prepare_samples(samples, &readings, origin_s, lost, conditions, &masked).map_err(|why| why.0);
+    if !gated.repaired.is_empty() || gated.remap.is_some() {
+        repair(&mut samples, &mut readings, &gated);
+        settled = Session { readings: &readings, origin_s, lost, conditions }.settle(&mut |_| {});
+    }
+    let prepared = prepare_settled(samples, &settled, conditions, &masked(&gated)).map_err(|why| why.0);
     Intake { gated, conditions, prepared }
 }
 

@@ -41,7 +41,7 @@ impl Judged {
         self.unknown = false;
         let (named, dropped): (Vec<_>, Vec<_>) = std::mem::take(&mut self.named)
             .into_iter()
-            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.found.id.ends_with("_random_walk"));
+            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.is_walk);
         self.named = named;
         self.traces |= !dropped.is_empty();
     }
@@ -91,8 +91,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
     if judged.unknown {
         let named = std::mem::take(&mut judged.named);
-        let (walks, named): (Vec<_>, Vec<_>) =
-            named.into_iter().partition(|finding| finding.found.id.ends_with("_random_walk"));
+        let (walks, named): (Vec<_>, Vec<_>) = named.into_iter().partition(|finding| finding.is_walk);
         judged.demoted.extend(walks);
         judged.named = named;
     }

@@ -6,6 +6,7 @@ use super::diagnosis::Limit;
 use super::search::bench::{Bench, HEALTHY, with_walks};
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
+use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR};
 
 /// What the recording could have shown, with 95 % certainty, by the threshold in force.
 ///
@@ -48,13 +49,9 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
     if let Some(why) = candidate.absent {
         return none(why, "");
     }
-    if let Some((_, unit_si, unit)) = candidate.walk {
+    if let Some((gyro, unit_si, unit)) = candidate.walk {
         // What is more than healthy by the first level that counts.
-        let floor = if unit == "mdps/sqrt(s)" {
-            super::twin::noise::BIAS_WALK_FLOOR
-        } else {
-            super::twin::noise::FORCE_WALK_FLOOR
-        };
+        let floor = if gyro { BIAS_WALK_FLOOR } else { FORCE_WALK_FLOOR };
         let limit = (floor * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
     }

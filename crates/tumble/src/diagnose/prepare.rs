@@ -8,8 +8,9 @@ use super::twin::data::{Raw, stretches};
 use super::twin::edges;
 use super::twin::noise::Noise;
 use super::twin::trajectory::Nominal;
-use crate::calibrate::{self, Session};
-use crate::recording::{Inference, Reading, Recording};
+use crate::calibrate::Session;
+use crate::recording::{Inference, Recording};
+use crate::settle::Settled;
 
 /// Why there is no twin.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,40 +31,38 @@ pub fn prepare(recording: &Recording, conditions: Conditions) -> Result<Prepared
     let readings = recording.samples(&inference);
     let origin_s = recording.origin_s();
     let samples = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    prepare_samples(samples, &readings, origin_s, inference.missing(), conditions, &[])
+    let session = Session { readings: &readings, origin_s, lost: inference.missing(), conditions };
+    prepare_settled(samples, &session.settle(&mut |_| {}), conditions, &[])
 }
 
-/// The same from samples: `readings` are what the estimator takes, `samples` the same in `f64`; segments in `masked` are
+/// The same from samples, and from what the same samples settled into as the estimator takes them; segments in `masked` are
 /// left out and lose attitude.
 ///
 /// # Errors
 /// As [`prepare`].
-pub fn prepare_samples(
+pub fn prepare_settled(
     samples: Vec<Raw>,
-    readings: &[Reading],
-    origin_s: f64,
-    lost: u32,
+    settled: &Settled,
     conditions: Conditions,
     masked: &[usize],
 ) -> Result<Prepared, NoTwin> {
-    let session = Session { readings, origin_s, lost, conditions };
-    let (tape, _) = session.tape(session.tolerance());
+    let tape = &settled.tape;
     if !tape.segments().iter().any(Segment::is_usable_still) {
         return Err(NoTwin("no rest was found: hold the sensor still for two seconds now and then".into()));
     }
     // The board's result is the better start; where it has none, the closed form is near enough for a fit in `f64`.
-    let estimate = calibrate::estimate(&tape, conditions, &mut |_| {}).ok().map(|(estimate, _)| estimate);
+    let estimate = settled.estimate.as_ref().ok().map(|(estimate, _)| estimate);
     let gravity = conditions.gravity_mps2;
-    let device_noise = match &estimate {
+    let device_noise = match estimate {
         Some(estimate) => estimate.noise,
-        None => tumble_core::estimate::Noise::from_rests(&tape, conditions.stops, conditions.faces),
+        None => tumble_core::estimate::Noise::from_rests(tape, conditions.stops, conditions.faces),
     };
-    let start = match &estimate {
+    let start = match estimate {
         Some(Estimate { calibration, .. }) => {
             Nominal::new(&calibration.gyroscope.triad, &calibration.accelerometer.triad)
         }
         None => {
-            let start = start::nominal(&tape, gravity);
+            let start = start::nominal(tape, gravity);
             Nominal::new(&start.gyro, &start.accel)
         }
     };

@@ -3,8 +3,8 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use tumble_core::tape::{Exclusion, Kind, Record, Segment};
 
-use crate::calibrate::HostTape;
 use crate::recording::Reading;
+use crate::settle::HostTape;
 
 /// Window of the angular acceleration's slope to either side, s: a twelfth, as long as the device's records.
 const SLOPE_S: f64 = 1.0 / 12.0;

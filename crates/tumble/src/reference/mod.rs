@@ -10,8 +10,8 @@ use tumble_core::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, PARAMETERS};
 
-use crate::calibrate::HostTape;
 use crate::recording::Reading;
+use crate::settle::HostTape;
 use data::Stretch;
 use gravity::Fitted;
 

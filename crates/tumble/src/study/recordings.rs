@@ -190,8 +190,8 @@ fn moved(usual: &Calibration, other: &Calibration) -> [f64; 3] {
 
 /// The device's estimate under stillness limits at `tolerance` times the usual.
 fn device(loaded: &Loaded, tolerance: f32) -> Option<Calibration> {
-    let (tape, _) = loaded.session().tape(tolerance);
-    calibrate::estimate(&tape, loaded.conditions, &mut |_| {}).ok().map(|(estimate, _)| estimate.calibration)
+    let settled = loaded.session().settle_at(tolerance, &mut |_| {});
+    settled.estimate.ok().map(|(estimate, _)| estimate.calibration)
 }
 
 fn agreement(a: &Loaded, b: &Loaded) -> Option<Agreement> {

@@ -1,8 +1,8 @@
 //! Sessions for `bench-firmware` to estimate: simulated, taken through the core's own segmenter, and handed over as words.
 
-use tumble_core::estimate::{Conditions, Estimator, Progress};
-use tumble_core::motion::segmenter::Segmenter;
-use tumble_core::sample::Sample;
+use tumble::settle;
+use tumble::study::trial::readings;
+use tumble_core::estimate::Conditions;
 use tumble_core::setup::{BoxFaces, TurnStops};
 use tumble_core::tape::{Exclusion, Kind, Segment, Tape};
 use tumble_sim::{Scheme, SchemeConfig};
@@ -45,17 +45,7 @@ impl Session {
     fn of(name: String, config: &SchemeConfig, stops: TurnStops, faces: BoxFaces) -> Result<Self, String> {
         let recording = config.record().map_err(|error| format!("{name}: {error:?}"))?;
         let mut tape = Box::new(SessionTape::new());
-        let mut segmenter = Segmenter::new(1.0);
-        for sample in &recording.samples {
-            let sample = Sample {
-                t_us: (sample.t_s * 1e6).round() as u64,
-                angular_rate_rad_s: sample.angular_rate_rad_s.cast(),
-                specific_force_mps2: sample.specific_force_mps2.cast(),
-                temperature_degc: sample.temperature_degc as f32,
-            };
-            segmenter.step(&sample, 0, &mut tape);
-        }
-        segmenter.finish(&mut tape);
+        settle::record(&readings(&recording.samples), 1.0, &mut tape);
         if tape.fill() >= 1.0 {
             return Err(format!("{name}: the tape is too short"));
         }
@@ -71,15 +61,8 @@ impl Session {
 }
 
 fn estimate(tape: &SessionTape, conditions: Conditions) -> Option<(u32, f32)> {
-    let mut estimator = Box::new(Estimator::new(tape, conditions));
-    loop {
-        match estimator.work(tape, 64).ok()? {
-            Progress::Working(_) => {}
-            Progress::Done(estimate) => {
-                return Some((estimate.passes, estimate.calibration.gyroscope.triad.correction.m11));
-            }
-        }
-    }
+    let (estimate, _) = settle::estimate(tape, conditions, &mut |_| {}).ok()?;
+    Some((estimate.passes, estimate.calibration.gyroscope.triad.correction.m11))
 }
 
 fn words(tape: &SessionTape, conditions: Conditions) -> Vec<u32> {

@@ -1,0 +1,133 @@
+//! A recording on the board's tape: under the stillness limits that it needs, with the estimate that settled the question.
+
+use tumble_core::calibration::{Reason, Verdict};
+use tumble_core::estimate::sums::SegmentNoise;
+use tumble_core::estimate::{Conditions, Estimate, Estimator, Progress, judge};
+use tumble_core::motion::MotionEvent;
+use tumble_core::motion::segmenter::Segmenter;
+use tumble_core::tape::Tape;
+
+use crate::calibrate::Session;
+use crate::recording::Reading;
+
+/// Room for fifty minutes of motion (20 records a second), where the board has room for the session that it guides;
+/// nothing else differs.
+const RECORDS: usize = 60_000;
+const SEGMENTS: usize = 1024;
+/// Stillness limits, in units of the board's, tried until a session gives a result. The board's admit a trembling of three
+/// times the sensor's noise (0.3 °/s) and tell a person to let go; a recording cannot be told, and a hand's tremor of
+/// 0.05° at 8–12 Hz (Elble & Koller 1990) is 3 °/s. Four times is where slow motion begins to pass for rest.
+const TOLERANCES: [f32; 3] = [1.0, 2.0, 4.0];
+/// Records walked between two signs of life.
+const SLICE: usize = 64;
+
+/// The tape of a host.
+pub type HostTape = Tape<RECORDS, SEGMENTS>;
+
+/// The device's estimate, with what it found of each segment's noise.
+pub type Estimated = Result<(Estimate, Vec<SegmentNoise>), Reason>;
+
+/// What a recording settled into.
+pub struct Settled {
+    /// Everything, by segments.
+    pub tape: Box<HostTape>,
+    /// The stamp at which the tape was full, if it was, µs.
+    pub full_us: Option<u64>,
+    /// Stillness limits in units of the board's.
+    pub tolerance: f32,
+    /// Under the session's own conditions.
+    pub estimate: Estimated,
+}
+
+impl Settled {
+    /// Had the limits to be widened?
+    pub fn trembles(&self) -> bool {
+        self.tolerance > TOLERANCES[0]
+    }
+}
+
+impl Session<'_> {
+    /// Under the narrowest stillness limits with which nothing is said for want of rests; else the narrowest with a result
+    /// that the judge does not reject; else the board's own. `progress` hears which share of an estimate is done, 0 to 1.
+    pub fn settle(&self, progress: &mut impl FnMut(f32)) -> Settled {
+        let (mut first, mut usable) = (None, None);
+        for tolerance in TOLERANCES {
+            let settled = self.settle_at(tolerance, progress);
+            let Ok((estimate, _)) = &settled.estimate else {
+                first.get_or_insert(settled);
+                continue;
+            };
+            let judgement = judge::judge(estimate, &settled.tape, self.lost).0;
+            let accepted = judgement.verdict != Verdict::Rejected;
+            let content = !judgement.reasons.iter().any(wants_rest);
+            if content && accepted {
+                return settled;
+            }
+            let kept = if accepted { &mut usable } else { &mut first };
+            kept.get_or_insert(settled);
+            if content {
+                break;
+            }
+        }
+        // At the board's own limits one of the two was filled.
+        usable.or(first).unwrap_or_else(|| self.settle_at(TOLERANCES[0], progress))
+    }
+
+    /// With the stillness limits at `tolerance` times the usual.
+    pub fn settle_at(&self, tolerance: f32, progress: &mut impl FnMut(f32)) -> Settled {
+        let mut tape = Box::new(HostTape::new());
+        let full_us = record(self.readings, tolerance, &mut tape);
+        let estimate = estimate(&tape, self.conditions, progress);
+        Settled { tape, full_us, tolerance, estimate }
+    }
+}
+
+/// Puts readings on a tape with the stillness limits at `tolerance` times the usual; if it was full before the end, the stamp
+/// when, µs.
+pub fn record<const R: usize, const S: usize>(
+    readings: &[Reading],
+    tolerance: f32,
+    tape: &mut Tape<R, S>,
+) -> Option<u64> {
+    let mut segmenter = Segmenter::new(tolerance);
+    let mut full_us = None;
+    for reading in readings {
+        let events = segmenter.step(&reading.sample, reading.clipped, tape);
+        tape.note_temperature(reading.sample.temperature_degc);
+        if events.contains(&MotionEvent::TapeFull) {
+            full_us = Some(reading.sample.t_us);
+        }
+    }
+    segmenter.finish(tape);
+    full_us
+}
+
+/// The device's estimate over a tape.
+///
+/// # Errors
+/// If the arithmetic breaks down.
+pub fn estimate<const R: usize, const S: usize>(
+    tape: &Tape<R, S>,
+    conditions: Conditions,
+    progress: &mut impl FnMut(f32),
+) -> Estimated {
+    let mut estimator = Box::new(Estimator::new(tape, conditions));
+    loop {
+        match estimator.work(tape, SLICE).map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })? {
+            Progress::Working(share) => progress(share.min(1.0)),
+            Progress::Done(estimate) => return Ok((estimate, estimator.segment_noise().to_vec())),
+        }
+    }
+}
+
+/// Reasons that rests not recognised as such bring about.
+const fn wants_rest(reason: &Reason) -> bool {
+    matches!(
+        reason,
+        Reason::FacesMissing { .. }
+            | Reason::TurnsMissing { .. }
+            | Reason::NotObservable { .. }
+            | Reason::Uncertain { .. }
+            | Reason::BiasDrift { .. }
+    )
+}
