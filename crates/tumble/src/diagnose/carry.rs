@@ -32,28 +32,9 @@ pub struct Carried {
     /// As a formula.
     pub equation: String,
     /// Of the formula.
-    pub parameters: Vec<CarriedValue>,
+    pub parameters: Vec<Value>,
     /// Mean temperature that slopes are about, °C; null where the recording has none.
     pub about_degc: Option<f64>,
-}
-
-/// A number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CarriedValue {
-    /// Such as `x_per_y`.
-    pub name: String,
-    /// In its unit.
-    pub value: f64,
-    /// One sigma.
-    pub sigma: f64,
-    /// Of both.
-    pub unit: String,
-}
-
-impl From<Value> for CarriedValue {
-    fn from(value: Value) -> Self {
-        Self { name: value.name, value: value.value, sigma: value.sigma, unit: value.unit }
-    }
 }
 
 /// Fits the effects and takes them out of the readings.
@@ -84,7 +65,7 @@ pub fn carry(
     let carried = (0..ids.len()).map(|k| Carried {
         id: ids[k].clone(),
         equation: bench.candidates[bench.accepted[k].candidate].effect.card.equation.into(),
-        parameters: numbers::shift_values(&bench, &rows, &ledger, k).0.into_iter().map(Into::into).collect(),
+        parameters: numbers::shift_values(&bench, &rows, &ledger, k).0,
         about_degc: temperature.is_finite().then_some(temperature),
     });
     let carried = carried.collect();

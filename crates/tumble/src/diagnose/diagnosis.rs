@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Stands for "none of any size" where JSON needs a number: beyond every size that occurs, and safe to compare with.
 /// (JSON has no infinity, `serde_json` would write null, and `f64::MAX` overflows where it is read in decimal.)
@@ -138,7 +138,7 @@ pub struct RunnerUp {
 }
 
 /// A number.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 pub struct Value {
     /// Of the parameter.
     pub name: String,
