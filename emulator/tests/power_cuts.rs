@@ -6,10 +6,10 @@ mod firmware;
 
 use std::sync::OnceLock;
 
-use emulator::Stopped;
 use emulator::story::acts;
 use emulator::story::parameters::Parameters;
 use emulator::story::stage::{Cast, Stage};
+use emulator::{SensorFault, Stopped};
 use tumble_sim::PersonConfig;
 
 /// One turn on each face, briskly.
@@ -93,6 +93,19 @@ fn a_store_cut_in_its_middle_leaves_a_whole_record() {
 #[test]
 fn a_store_cut_at_its_last_operation_leaves_a_whole_record() {
     second_calibration_cut(second().operations - 1);
+}
+
+/// A sensor of another kind in the same board: the old one's calibration is kept, and not used until that is back.
+#[test]
+fn a_calibration_of_another_sensor_is_kept_and_not_used() {
+    let mut cast = brisk(24);
+    cast.person.start_words = None;
+    let mut stage = stage_with(&first().flash, cast);
+    stage.board.inject_fault(Some(SensorFault::Foreign { who_am_i: 0x73 }));
+    let (state, found) = after_the_cut(&mut stage);
+    assert_eq!((state.as_str(), found.0.is_empty()), ("other_sensor", true));
+    stage.board.inject_fault(None);
+    assert_eq!(after_the_cut(&mut stage), ("stored".to_owned(), first().exported.clone()));
 }
 
 /// The same for the word that forgets a calibration: it is there whole or it is gone.

@@ -14,12 +14,19 @@ pub struct Keeper {
     store: Store<SafeFlash>,
     record: Option<Record>,
     readable: bool,
+    /// WHO_AM_I of the sensor that answers; none until it has.
+    fitted: Option<u8>,
 }
 
 impl Keeper {
     /// Nothing is read yet.
     pub fn new(flash: ParameterFlash) -> Self {
-        Self { store: Store::new(SafeFlash(flash)), record: None, readable: true }
+        Self { store: Store::new(SafeFlash(flash)), record: None, readable: true, fitted: None }
+    }
+
+    /// A sensor has answered: from now on a calibration of another kind of sensor is not in force.
+    pub fn fit(&mut self, whoami: u8) {
+        self.fitted = Some(whoami);
     }
 
     /// Reads what is in flash; it is in force from now on. What cannot be read is left there.
@@ -51,7 +58,7 @@ impl Keeper {
 
     /// What compensates.
     pub fn in_force(&self) -> Option<&Record> {
-        self.record.as_ref()
+        self.record.as_ref().filter(|record| self.fitted.is_none_or(|whoami| whoami == record.origin.whoami))
     }
 
     /// As in `@hello`.
@@ -59,6 +66,7 @@ impl Keeper {
         match (self.readable, &self.record) {
             (false, _) => CalibrationState::Unreadable,
             (true, None) => CalibrationState::None,
+            (true, Some(_)) if self.in_force().is_none() => CalibrationState::OtherSensor,
             (true, Some(_)) => CalibrationState::Stored,
         }
     }

@@ -202,6 +202,8 @@ impl Desk {
         match event {
             SensorEvent::Started(identity) => {
                 self.identity = Some(identity);
+                self.keeper.fit(identity.who_am_i);
+                self.put_in_force();
                 self.hello().await;
                 if identity.standing() == Standing::Relative {
                     defmt::warn!("identity {=u8:#x} is a relative of the MPU9250", identity.who_am_i);

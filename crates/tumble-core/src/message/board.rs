@@ -17,6 +17,8 @@ pub enum CalibrationState {
     Stored,
     /// A record that this firmware cannot use, and leaves alone.
     Unreadable,
+    /// A record of a sensor with another WHO_AM_I: left alone and not in force.
+    OtherSensor,
 }
 
 /// What the board says after start.
@@ -85,6 +87,7 @@ impl CalibrationState {
             Self::None => "none",
             Self::Stored => "stored",
             Self::Unreadable => "unreadable",
+            Self::OtherSensor => "other_sensor",
         }
     }
 }
@@ -113,6 +116,10 @@ impl Hello {
             CalibrationState::Unreadable => {
                 "The calibration in flash cannot be used by this firmware and is left untouched: install the newer firmware \
                  again, or type \"calibrate\"."
+            }
+            CalibrationState::OtherSensor => {
+                "The calibration in flash belongs to a sensor with another identity: it is kept and not used. Type \"calibrate\" \
+                 for this sensor, or put the old one back."
             }
         })
     }

@@ -144,7 +144,8 @@ fn checked() -> Vec<Message> {
 }
 
 fn told() -> Vec<Message> {
-    let hellos = [CalibrationState::None, CalibrationState::Stored, CalibrationState::Unreadable].map(hello);
+    use CalibrationState as State;
+    let hellos = [State::None, State::Stored, State::Unreadable, State::OtherSensor].map(hello);
     let (rate_hz, ranges, sensor) = (200.04, Ranges::WIDEST, "MPU9250");
     let info = Info {
         hello: hellos[1],
