@@ -16,6 +16,8 @@ pub mod promise;
 pub mod report;
 mod run;
 pub mod search;
+mod settings;
+mod stops;
 pub mod transfer;
 pub mod twin;
 

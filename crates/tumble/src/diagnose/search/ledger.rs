@@ -24,6 +24,9 @@ struct Sums {
 pub struct Ledger {
     classes: Vec<Sums>,
     log_sigma: f64,
+    /// Least s² of every class; what is not free stays 1.
+    least: [f64; 6],
+    free: [bool; 6],
 }
 
 /// One column of a model.
@@ -65,7 +68,21 @@ impl Ledger {
                 gram: responses.transpose() * &responses,
             }
         });
-        Self { classes: classes.into(), log_sigma: rows.log_sigma }
+        Self { classes: classes.into(), log_sigma: rows.log_sigma, least: [1.0; 6], free: [true; 6] }
+    }
+
+    /// This class's noise is as believed: the belief itself is what is estimated.
+    #[must_use]
+    pub fn believing(mut self, class: Class) -> Self {
+        Class::ALL.iter().zip(&mut self.free).for_each(|(one, free)| *free &= *one != class);
+        self
+    }
+
+    /// Noise may be smaller than believed as well: a bound on one side would push what is estimated beside it to the other.
+    #[must_use]
+    pub fn either_way(mut self) -> Self {
+        self.least = [0.25; 6];
+        self
     }
 
     /// The model of these terms; an empty one is the null.
@@ -89,7 +106,9 @@ impl Ledger {
             let mut scales = [1.0; 6];
             for (k, class) in self.classes.iter().enumerate() {
                 let left = class.squares - 2.0 * fit.theta.dot(&moments[k]) + fit.theta.dot(&(&grams[k] * &fit.theta));
-                scales[k] = (left / class.count.max(1.0)).max(1.0);
+                if self.free[k] && class.count > 0.0 {
+                    scales[k] = (left / class.count).max(self.least[k]);
+                }
                 evidence -= 0.5 * (class.count * f64::ln(fit.scales[k]) + left / fit.scales[k]);
             }
             fit.evidence = evidence;
