@@ -8,7 +8,7 @@ use tumble_core::estimate::Conditions;
 
 use super::diagnosis::Value;
 use super::numbers;
-use super::stops;
+use super::posterior;
 use super::prepare::prepare;
 use super::search::bench::{Accepted, Bench};
 use super::search::ledger::Ledger;
@@ -82,7 +82,7 @@ pub fn carry(
     let rows = bench.rows(noise);
     let ledger = Ledger::new(&rows, |_| true);
     let temperature = super::twin::trajectory::mean_temperature(&bench.original);
-    let settled = stops::settled(&mut bench);
+    let settled = posterior::noise(&mut bench);
     let mut carried = Vec::new();
     for (k, id) in ids.iter().enumerate() {
         let (values, _) = numbers::shift_values(&mut bench, &rows, &ledger, settled, k);

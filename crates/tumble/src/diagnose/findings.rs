@@ -8,7 +8,7 @@ use super::search::ledger::Ledger;
 use super::search::select::{self, Score, Selection};
 use super::search::shares;
 use super::search::unknown::{self, ALIAS};
-use super::stops;
+use super::posterior;
 use super::twin::noise::Noise;
 use super::twin::rows::{CHANNELS, Rows};
 
@@ -27,7 +27,7 @@ pub struct Finding {
 
 /// All accepted effects, the strongest first.
 pub fn findings(bench: &mut Bench, selection: &Selection, origin_s: f64) -> Vec<Finding> {
-    let noise = stops::settled(bench);
+    let noise = posterior::noise(bench);
     let mut findings: Vec<Finding> =
         (0..bench.accepted.len()).map(|k| finding(bench, selection, noise, k, origin_s)).collect();
     findings.sort_by(|a, b| b.found.evidence.total_cmp(&a.found.evidence));
@@ -95,7 +95,7 @@ fn stated(
 
 /// Ids and numbers of all accepted effects.
 pub fn numbers(bench: &mut Bench, selection: &Selection) -> Vec<(&'static str, Vec<Value>)> {
-    let noise = stops::settled(bench);
+    let noise = posterior::noise(bench);
     let ledger = Ledger::new(&selection.after, |_| true);
     let id = |bench: &Bench, k: usize| bench.candidates[bench.accepted[k].candidate].effect.card.id;
     (0..bench.accepted.len()).map(|k| (id(bench, k), stated(bench, selection, &ledger, noise, k).0)).collect()

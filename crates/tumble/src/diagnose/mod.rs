@@ -11,13 +11,13 @@ pub mod intake;
 mod judge;
 mod limits;
 mod numbers;
+mod posterior;
 pub mod prepare;
 pub mod promise;
 pub mod report;
 mod run;
 pub mod search;
 mod settings;
-mod stops;
 pub mod transfer;
 pub mod twin;
 

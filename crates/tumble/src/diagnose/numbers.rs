@@ -18,7 +18,7 @@ pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
     DVector::from_fn(parameters(bench, k), |i, _| fit.theta[before + i] + taken[i])
 }
 
-/// An accepted effect's numbers, freed of the prior, under `noise` (see [`stops::settled`](super::stops::settled)), and its
+/// An accepted effect's numbers, freed of the prior, under `noise` (see [`posterior::noise`](super::posterior::noise)), and its
 /// share in every row.
 pub fn shift_values(
     bench: &mut Bench,
@@ -28,7 +28,7 @@ pub fn shift_values(
     k: usize,
 ) -> (Vec<Value>, Vec<f64>) {
     let in_force = std::mem::replace(&mut bench.twin.noise, noise);
-    let settled = settings::settle(bench, k);
+    let settled = settings::settle(bench, ledger, k);
     let fit = own_fit(bench, k);
     bench.twin.noise = in_force;
     let total = total(bench, &fit, k);
@@ -50,8 +50,8 @@ pub fn shift_values(
     };
     let mut values: Vec<Value> = placed.parameters.iter().enumerate().map(value).collect();
     if let Some((name, value, unit)) = placed.setting {
-        let (value, sigma) =
-            settled.map_or_else(|| (value, setting_sigma(bench, ledger, k)), |settled| (settled.setting, settled.sigma));
+        let (value, sigma) = settled
+            .map_or_else(|| (value, settings::sigma(bench, ledger, k)), |settled| (settled.setting, settled.sigma));
         values.push(Value { name: name.into(), value, sigma, unit: unit.into() });
     }
     let signal = (0..rows.at.len())
@@ -73,37 +73,8 @@ fn own_fit(bench: &mut Bench, k: usize) -> Fit {
     Ledger::new(&rows, |_| true).believing(Class::Closure).fit(&local)
 }
 
-/// Spread of the setting (a time, a time constant) over the variants, each by its evidence.
-fn setting_sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
-    let accepted = &bench.accepted[k];
-    let mut others = bench.accepted_terms(Some(k));
-    others.extend(bench.put_back(accepted));
-    let variants = &bench.candidates[accepted.candidate].variants;
-    let weights: Vec<(f64, f64)> = (0..variants.len())
-        .filter_map(|variant| {
-            let mut terms = others.clone();
-            // The variant in force: put-back and itself share columns; free ones replace the fixed.
-            terms.retain(|term| !variants[variant].columns.contains(&term.column));
-            let taken: &[f64] = if variant == accepted.variant { &accepted.taken } else { &[] };
-            terms.extend(bench.terms(accepted.candidate, variant, accepted.widening, taken));
-            Some((variants[variant].setting?.1, ledger.fit(&terms).evidence))
-        })
-        .collect();
-    let most = weights.iter().map(|weight| weight.1).fold(f64::NEG_INFINITY, f64::max);
-    let share = |evidence: f64| (evidence - most).exp();
-    let sum: f64 = weights.iter().map(|weight| share(weight.1)).sum();
-    let mean: f64 = weights.iter().map(|weight| weight.0 * share(weight.1)).sum::<f64>() / sum;
-    let spread = weights.iter().map(|w| (w.0 - mean).powi(2) * share(w.1)).sum::<f64>() / sum;
-    // Between two neighbours nothing is known: a step is uniform over its grid.
-    let mut settings: Vec<f64> = weights.iter().map(|weight| weight.0).collect();
-    settings.sort_by(f64::total_cmp);
-    let at = variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
-    let grid = settings.windows(2).filter(|w| w[0] <= at && at <= w[1]).map(|w| w[1] - w[0]).fold(0.0, f64::max);
-    (spread + grid * grid / 12.0).sqrt()
-}
-
-/// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. What the rows scatter beyond a walk is
-/// free to either side: noise that could only be larger than believed took a seventh off a walk's size.
+/// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. Classes of rows scatter beyond it only
+/// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
 pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
     let terms = freed(bench.accepted_terms(None));
     let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
@@ -116,10 +87,13 @@ pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, uni
         }
     };
     let in_force = bench.twin.noise;
+    bench.twin.noise = noise;
+    let ledger = Ledger::new(&bench.rows_of(&columns), |_| true).believing(Class::Closure);
+    let scales = ledger.certain(&ledger.fit(&local));
     let mut evidence = |log: f64| {
         bench.twin.noise = with(noise, log.exp());
         let rows = bench.rows_of(&columns);
-        Ledger::new(&rows, |_| true).believing(Class::Closure).either_way().fit(&local).evidence
+        Ledger::new(&rows, |_| true).at(&scales).fit(&local).evidence
     };
     // Newton's method on a parabola through three points.
     let (mut at, mut sigma_log) = (0.0, 1.0);

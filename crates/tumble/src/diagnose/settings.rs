@@ -39,36 +39,66 @@ struct Tried {
     covariance: DMatrix<f64>,
 }
 
-/// None for an effect without such a setting.
-pub fn settle(bench: &mut Bench, k: usize) -> Option<Settled> {
+/// The variants' settings with their evidence.
+fn coarse(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<(f64, f64)> {
     let accepted = &bench.accepted[k];
-    let candidate = &bench.candidates[accepted.candidate];
-    let at = at_any_setting(candidate.effect.card.id)?;
-    let mut grid: Vec<f64> = candidate.variants.iter().filter_map(|variant| Some(variant.setting?.1)).collect();
-    grid.sort_by(f64::total_cmp);
-    let chosen = candidate.variants[accepted.variant].setting?.1;
-    let place = grid.iter().position(|setting| *setting >= chosen)?;
-    // Two to either side: the best of the coarse grid may be the wrong neighbour. Beyond its ends, half of the last step's ratio.
-    let (mut low, mut high) = (grid[place.saturating_sub(2)], grid[(place + 2).min(grid.len() - 1)]);
-    if low == chosen {
-        low = 0.5 * chosen;
-    }
-    if high == chosen {
-        high = 1.5 * chosen;
-    }
+    let mut others = bench.accepted_terms(Some(k));
+    others.extend(bench.put_back(accepted));
+    let variants = &bench.candidates[accepted.candidate].variants;
+    let weigh = |variant: usize| {
+        let mut terms = others.clone();
+        // The variant in force: put-back and itself share columns; free ones replace the fixed.
+        terms.retain(|term| !variants[variant].columns.contains(&term.column));
+        let taken: &[f64] = if variant == accepted.variant { &accepted.taken } else { &[] };
+        terms.extend(bench.terms(accepted.candidate, variant, accepted.widening, taken));
+        Some((variants[variant].setting?.1, ledger.fit(&terms).evidence))
+    };
+    let mut coarse: Vec<(f64, f64)> = (0..variants.len()).filter_map(weigh).collect();
+    coarse.sort_by(|a, b| a.0.total_cmp(&b.0));
+    coarse
+}
+
+/// Spread of a setting over the variants, each by its evidence; between two neighbours nothing is known.
+pub fn sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
+    let coarse = coarse(bench, ledger, k);
+    let most = coarse.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+    let share = |evidence: f64| (evidence - most).exp();
+    let sum: f64 = coarse.iter().map(|one| share(one.1)).sum();
+    let mean: f64 = coarse.iter().map(|one| one.0 * share(one.1)).sum::<f64>() / sum;
+    let spread = coarse.iter().map(|one| (one.0 - mean).powi(2) * share(one.1)).sum::<f64>() / sum;
+    let accepted = &bench.accepted[k];
+    let at = bench.candidates[accepted.candidate].variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
+    let around = coarse.windows(2).filter(|pair| pair[0].0 <= at && at <= pair[1].0);
+    let grid = around.map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
+    (spread + grid * grid / 12.0).sqrt()
+}
+
+/// None for an effect without such a setting.
+pub fn settle(bench: &mut Bench, ledger: &Ledger, k: usize) -> Option<Settled> {
+    let at = at_any_setting(bench.candidates[bench.accepted[k].candidate].effect.card.id)?;
+    let (mut low, mut high) = possible(&coarse(bench, ledger, k))?;
     let mut tried = Vec::new();
     for _ in 0..ZOOMS {
         tried = try_all(bench, k, at, low, high);
-        let most = tried.iter().map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max);
-        let step = (high - low) / (TRIED - 1) as f64;
-        let possible = || tried.iter().filter(|one| one.evidence > most - EXCLUDED).map(|one| one.setting);
-        let (first, last) = (possible().fold(f64::MAX, f64::min), possible().fold(f64::MIN, f64::max));
+        let seen: Vec<(f64, f64)> = tried.iter().map(|one| (one.setting, one.evidence)).collect();
+        let (first, last) = possible(&seen)?;
         if last - first > 0.5 * (high - low) {
             break;
         }
-        (low, high) = ((first - step).max(low), (last + step).min(high));
+        (low, high) = (first.max(low), last.min(high));
     }
     Some(mixture(&tried))
+}
+
+/// From the neighbour before the first setting that is not excluded to the one after the last; beyond a grid's end, half as much
+/// again.
+fn possible(weighed: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let most = weighed.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+    let is_possible = |one: &(f64, f64)| one.1 > most - EXCLUDED;
+    let (first, last) = (weighed.iter().position(is_possible)?, weighed.iter().rposition(is_possible)?);
+    let low = if first > 0 { weighed[first - 1].0 } else { 0.5 * weighed[0].0 };
+    let high = weighed.get(last + 1).map_or(1.5 * weighed[last].0, |one| one.0);
+    Some((low, high))
 }
 
 fn try_all(bench: &mut Bench, k: usize, at: fn(f64) -> Variant, low: f64, high: f64) -> Vec<Tried> {

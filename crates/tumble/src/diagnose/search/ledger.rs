@@ -24,9 +24,8 @@ struct Sums {
 pub struct Ledger {
     classes: Vec<Sums>,
     log_sigma: f64,
-    /// Least s² of every class; what is not free stays 1.
-    least: [f64; 6],
-    free: [bool; 6],
+    /// s² where it is not maximised.
+    fixed: [Option<f64>; 6],
 }
 
 /// One column of a model.
@@ -68,21 +67,32 @@ impl Ledger {
                 gram: responses.transpose() * &responses,
             }
         });
-        Self { classes: classes.into(), log_sigma: rows.log_sigma, least: [1.0; 6], free: [true; 6] }
+        Self { classes: classes.into(), log_sigma: rows.log_sigma, fixed: [None; 6] }
     }
 
     /// This class's noise is as believed: the belief itself is what is estimated.
     #[must_use]
     pub fn believing(mut self, class: Class) -> Self {
-        Class::ALL.iter().zip(&mut self.free).for_each(|(one, free)| *free &= *one != class);
+        Class::ALL.iter().zip(&mut self.fixed).filter(|(one, _)| **one == class).for_each(|(_, fixed)| *fixed = Some(1.0));
         self
     }
 
-    /// Noise may be smaller than believed as well: a bound on one side would push what is estimated beside it to the other.
+    /// All classes at these scales.
     #[must_use]
-    pub fn either_way(mut self) -> Self {
-        self.least = [0.25; 6];
+    pub fn at(mut self, scales: &[f64; 6]) -> Self {
+        self.fixed = scales.map(Some);
         self
+    }
+
+    /// A fit's scales where a class scatters more than chance would have it (four sigma of `2/N`), else 1.
+    pub fn certain(&self, fit: &Fit) -> [f64; 6] {
+        let mut scales = fit.scales;
+        for (scale, class) in scales.iter_mut().zip(&self.classes) {
+            if *scale < 1.0 + 4.0 * (2.0 / class.count.max(1.0)).sqrt() {
+                *scale = 1.0;
+            }
+        }
+        scales
     }
 
     /// The model of these terms; an empty one is the null.
@@ -92,7 +102,7 @@ impl Ledger {
             evidence: f64::NEG_INFINITY,
             theta: DVector::zeros(n),
             covariance: DMatrix::zeros(n, n),
-            scales: [1.0; 6],
+            scales: self.fixed.map(|fixed| fixed.unwrap_or(1.0)),
         };
         let (grams, moments) = self.chosen(terms);
         for round in 0..ROUNDS {
@@ -106,9 +116,7 @@ impl Ledger {
             let mut scales = [1.0; 6];
             for (k, class) in self.classes.iter().enumerate() {
                 let left = class.squares - 2.0 * fit.theta.dot(&moments[k]) + fit.theta.dot(&(&grams[k] * &fit.theta));
-                if self.free[k] && class.count > 0.0 {
-                    scales[k] = (left / class.count).max(self.least[k]);
-                }
+                scales[k] = self.fixed[k].unwrap_or((left / class.count.max(1.0)).max(1.0));
                 evidence -= 0.5 * (class.count * f64::ln(fit.scales[k]) + left / fit.scales[k]);
             }
             fit.evidence = evidence;

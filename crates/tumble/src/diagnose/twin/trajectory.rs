@@ -110,6 +110,8 @@ pub struct Trajectory {
     pub levelled: Vec<Vector3<f64>>,
     /// Variance of noise in [`Moment::mean_rate`], (rad/s)².
     pub mean_rate_variance: Vector3<f64>,
+    /// Variance of noise in [`Moment::rate`], (rad/s)².
+    pub rate_variance: Vector3<f64>,
 }
 
 impl Trajectory {
@@ -130,7 +132,8 @@ impl Trajectory {
             moments: Vec::with_capacity(samples.len()),
         };
         let levelled = stretches.iter().map(|stretch| walker.walk(stretch)).collect();
-        Self { levelled, mean_rate_variance: walker.noise.mean, moments: walker.moments }
+        let Quiet { scatter: rate_variance, mean: mean_rate_variance, .. } = walker.noise;
+        Self { levelled, mean_rate_variance, rate_variance, moments: walker.moments }
     }
 }
 

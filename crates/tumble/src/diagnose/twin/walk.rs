@@ -128,7 +128,7 @@ impl<'a> Walk<'a> {
             (visit, _) => *visit = None,
         }
         if turn {
-            self.state.reset(state::PIVOT, 3, noise::PIVOT_SIGMA_M);
+            self.state.reset(state::PIVOT, 3, self.pass.noise.pivot_sigma_m);
         }
         let end = stretch.samples.end - 1;
         let middle_s = 0.5 * (self.moment(stretch.samples.start).t_s + self.moment(end).t_s);
