@@ -3,12 +3,12 @@
 use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp, Value};
 use super::held_out;
 use super::numbers::{shift_values, total, walk_value};
+use super::posterior;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::{self, Score, Selection};
 use super::search::shares;
 use super::search::unknown::{self, ALIAS};
-use super::posterior;
 use super::twin::noise::Noise;
 use super::twin::rows::{CHANNELS, Rows};
 
@@ -78,13 +78,7 @@ fn finding(bench: &mut Bench, selection: &Selection, noise: Noise, k: usize, ori
 }
 
 /// An accepted effect's numbers, and its share in every row.
-fn stated(
-    bench: &mut Bench,
-    selection: &Selection,
-    ledger: &Ledger,
-    noise: Noise,
-    k: usize,
-) -> (Vec<Value>, Vec<f64>) {
+fn stated(bench: &mut Bench, selection: &Selection, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
     match bench.candidates[bench.accepted[k].candidate].walk {
         Some((gyro, unit_si, unit)) => {
             (vec![walk_value(bench, noise, gyro, unit_si, unit)], vec![0.0; selection.after.at.len()])

@@ -20,13 +20,7 @@ pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
 
 /// An accepted effect's numbers, freed of the prior, under `noise` (see [`posterior::noise`](super::posterior::noise)), and its
 /// share in every row.
-pub fn shift_values(
-    bench: &mut Bench,
-    rows: &Rows,
-    ledger: &Ledger,
-    noise: Noise,
-    k: usize,
-) -> (Vec<Value>, Vec<f64>) {
+pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
     let in_force = std::mem::replace(&mut bench.twin.noise, noise);
     let settled = settings::settle(bench, ledger, k);
     let fit = own_fit(bench, k);

@@ -31,11 +31,9 @@ pub fn noise(bench: &mut Bench) -> Noise {
     let least_deg = if bench.twin.stops == TurnStops::Fenced { LEAST_FENCED_DEG } else { LEAST_BY_HAND_DEG };
     let stop = |step: i32| (least_deg.to_radians() * 2f64.powf(0.5 * f64::from(step))).powi(2);
     let mut noise = in_force;
-    noise.stop_sigma_rad = mean(bench, (0..STOP_STEPS).map(stop), |variance| Noise {
-        stop_sigma_rad: variance.sqrt(),
-        ..noise
-    })
-    .map_or(noise.stop_sigma_rad, f64::sqrt);
+    noise.stop_sigma_rad =
+        mean(bench, (0..STOP_STEPS).map(stop), |variance| Noise { stop_sigma_rad: variance.sqrt(), ..noise })
+            .map_or(noise.stop_sigma_rad, f64::sqrt);
     let [wanders, force_wanders] = [true, false].map(|gyro| is_walk(bench, gyro));
     let levels = |floor: f64| {
         let whole = (HEALTHY[2] / HEALTHY[0]).ln() / f64::from(WALK_STEPS - 1);
@@ -52,7 +50,8 @@ pub fn noise(bench: &mut Bench) -> Noise {
     let levers = ["accel_lever_arm", "accel_internal_lever_arms"];
     if bench.accepted.iter().any(|one| levers.contains(&bench.candidates[one.candidate].effect.card.id)) {
         let pivot = |step: i32| (PIVOT_SIGMA_M * 2f64.powi(1 - step)).powi(2);
-        let found = mean(bench, (0..PIVOT_STEPS).map(pivot), |variance| Noise { pivot_sigma_m: variance.sqrt(), ..noise });
+        let found =
+            mean(bench, (0..PIVOT_STEPS).map(pivot), |variance| Noise { pivot_sigma_m: variance.sqrt(), ..noise });
         noise.pivot_sigma_m = found.map_or(noise.pivot_sigma_m, f64::sqrt);
     }
     bench.twin.noise = in_force;

@@ -88,7 +88,8 @@ pub struct Report {
 /// Makes, searches, compares.
 pub fn run(options: &Options, done: &mut (impl FnMut(usize) + Send)) -> Result<Report, SimError> {
     let one = |k: usize| numbers(options, options.seed + k as u64);
-    let all: Vec<Vec<Number>> = parallel::map(options.seeds, options.threads, one, done).into_iter().collect::<Result<_, _>>()?;
+    let all: Vec<Vec<Number>> =
+        parallel::map(options.seeds, options.threads, one, done).into_iter().collect::<Result<_, _>>()?;
     let whole = |numbers: &&Vec<Number>| {
         options.effects.iter().all(|effect| numbers.iter().any(|number| number.id == effect.kind().id))
     };
@@ -156,7 +157,11 @@ fn config(options: &Options, seed: u64) -> SchemeConfig {
 /// One line a number, and one for all.
 pub fn table(report: &Report) -> String {
     let mut text = format!("{} recordings, all effects found in {}\n", report.recordings, report.found);
-    let _ = writeln!(text, "{:<26} {:<12} {:>5} {:>8} {:>8} {:>8} {:>10}", "effect", "number", "count", "mean z", "rms z", "within 2", "sigma");
+    let _ = writeln!(
+        text,
+        "{:<26} {:<12} {:>5} {:>8} {:>8} {:>8} {:>10}",
+        "effect", "number", "count", "mean z", "rms z", "within 2", "sigma"
+    );
     let mut keys: Vec<(String, String)> = Vec::new();
     for number in &report.numbers {
         let key = (number.id.clone(), number.name.clone());
@@ -173,7 +178,11 @@ pub fn table(report: &Report) -> String {
         sigmas.sort_by(f64::total_cmp);
         let middle = sigmas.get(sigmas.len() / 2).copied().unwrap_or(f64::NAN);
         let share = 100.0 * within as f64 / count;
-        let _ = writeln!(text, "{id:<26} {name:<12} {:>5} {mean:>8.2} {rms:>8.2} {share:>7.0}% {middle:>10.3e}", chosen.len());
+        let _ = writeln!(
+            text,
+            "{id:<26} {name:<12} {:>5} {mean:>8.2} {rms:>8.2} {share:>7.0}% {middle:>10.3e}",
+            chosen.len()
+        );
     };
     for (id, name) in &keys {
         let chosen: Vec<&Number> = report.numbers.iter().filter(|one| one.id == *id && one.name == *name).collect();

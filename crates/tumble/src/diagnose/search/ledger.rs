@@ -73,7 +73,11 @@ impl Ledger {
     /// This class's noise is as believed: the belief itself is what is estimated.
     #[must_use]
     pub fn believing(mut self, class: Class) -> Self {
-        Class::ALL.iter().zip(&mut self.fixed).filter(|(one, _)| **one == class).for_each(|(_, fixed)| *fixed = Some(1.0));
+        Class::ALL
+            .iter()
+            .zip(&mut self.fixed)
+            .filter(|(one, _)| **one == class)
+            .for_each(|(_, fixed)| *fixed = Some(1.0));
         self
     }
 

@@ -288,7 +288,8 @@ impl Quiet {
         }
         let share = 1.0 / f64::max(count, 1.0);
         let scatter = scatter * share;
-        let chance = scatter.zip_map(&(squares * share), |mean, square| mean + 5.0 * (square - mean * mean).max(0.0).sqrt());
+        let chance =
+            scatter.zip_map(&(squares * share), |mean, square| mean + 5.0 * (square - mean * mean).max(0.0).sqrt());
         Self { scatter, chance, mean: mean * share }
     }
 
