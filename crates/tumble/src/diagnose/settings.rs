@@ -152,7 +152,7 @@ fn mixture(tried: &[Tried]) -> Settled {
 #[cfg(test)]
 mod tests {
     use super::{Tried, mixture};
-    use nalgebra::{dmatrix, dvector};
+    use nalgebra::{DMatrix, DVector};
 
     /// Two settings as likely as each other: their numbers' distance is uncertainty too.
     #[test]
@@ -160,8 +160,8 @@ mod tests {
         let one = |setting: f64, theta: f64| Tried {
             setting,
             evidence: -1000.0,
-            theta: dvector![theta],
-            covariance: dmatrix![4.0],
+            theta: DVector::from_element(1, theta),
+            covariance: DMatrix::from_element(1, 1, 4.0),
         };
         let settled = mixture(&[one(10.0, 1.0), one(12.0, 7.0)]);
         assert!((settled.theta[0] - 4.0).abs() < 1e-12 && (settled.covariance[(0, 0)] - 13.0).abs() < 1e-12);
