@@ -163,7 +163,7 @@ fn metadata(config: &SchemeConfig, rate_hz: f64) -> Metadata {
 }
 
 impl SchemeName {
-    fn scheme(self) -> Scheme {
+    pub(crate) fn scheme(self) -> Scheme {
         match self {
             Self::Single => Scheme::Single,
             Self::Double => Scheme::Double,

@@ -8,6 +8,7 @@ mod diagnose;
 mod effects;
 mod export;
 mod injection;
+mod numbers;
 mod output;
 mod reveal;
 mod serial;

@@ -27,6 +27,8 @@ enum Study {
     Blind(super::blind::Arguments),
     /// Are known effects recovered that were added to real recordings?
     Injection(super::injection::Arguments),
+    /// Are the numbers stated for an effect true within their sigmas? Nuisances can be switched on one at a time
+    Numbers(super::numbers::Arguments),
     /// Real recordings by several estimators, beside what their authors published
     Recordings(RecordingsArguments),
 }
@@ -87,6 +89,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
         Study::Blind(arguments) => super::blind::run(arguments),
         Study::Injection(arguments) => super::injection::run(arguments),
         Study::Limits(arguments) => limits(arguments),
+        Study::Numbers(arguments) => super::numbers::run(arguments),
         Study::Paper(arguments) => paper(arguments),
         Study::Recordings(arguments) => recordings(arguments),
     }

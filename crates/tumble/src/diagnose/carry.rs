@@ -8,6 +8,7 @@ use tumble_core::estimate::Conditions;
 
 use super::diagnosis::Value;
 use super::numbers;
+use super::posterior;
 use super::prepare::prepare;
 use super::search::bench::{Accepted, Bench};
 use super::search::ledger::Ledger;
@@ -62,13 +63,17 @@ pub fn carry(
     let rows = bench.rows(noise);
     let ledger = Ledger::new(&rows, |_| true);
     let temperature = super::twin::trajectory::mean_temperature(&bench.original);
-    let carried = (0..ids.len()).map(|k| Carried {
-        id: ids[k].clone(),
-        equation: bench.candidates[bench.accepted[k].candidate].effect.card.equation.into(),
-        parameters: numbers::shift_values(&bench, &rows, &ledger, k).0,
-        about_degc: temperature.is_finite().then_some(temperature),
-    });
-    let carried = carried.collect();
+    let settled = posterior::noise(&mut bench);
+    let mut carried = Vec::new();
+    for (k, id) in ids.iter().enumerate() {
+        let (values, _) = numbers::shift_values(&mut bench, &rows, &ledger, settled, k);
+        carried.push(Carried {
+            id: id.clone(),
+            equation: bench.candidates[bench.accepted[k].candidate].effect.card.equation.into(),
+            parameters: values,
+            about_degc: temperature.is_finite().then_some(temperature),
+        });
+    }
     let mut readings = recording.samples(&Inference::of(recording));
     for (reading, raw) in readings.iter_mut().zip(&bench.twin.samples) {
         reading.sample.angular_rate_rad_s = raw.rate.cast();

@@ -1,13 +1,15 @@
 //! From a finished search to the answer.
 
-use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp};
+use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp, Value};
 use super::held_out;
 use super::numbers::{shift_values, total, walk_value};
+use super::posterior;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::{self, Score, Selection};
 use super::search::shares;
 use super::search::unknown::{self, ALIAS};
+use super::twin::noise::Noise;
 use super::twin::rows::{CHANNELS, Rows};
 
 /// Two explanations whose evidence differs by less than odds of 20 to 1 are tied.
@@ -27,25 +29,21 @@ pub struct Finding {
 
 /// All accepted effects, the strongest first.
 pub fn findings(bench: &mut Bench, selection: &Selection, origin_s: f64) -> Vec<Finding> {
+    let noise = posterior::noise(bench);
     let mut findings: Vec<Finding> =
-        (0..bench.accepted.len()).map(|k| finding(bench, selection, k, origin_s)).collect();
+        (0..bench.accepted.len()).map(|k| finding(bench, selection, noise, k, origin_s)).collect();
     findings.sort_by(|a, b| b.found.evidence.total_cmp(&a.found.evidence));
     findings
 }
 
-fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) -> Finding {
+fn finding(bench: &mut Bench, selection: &Selection, noise: Noise, k: usize, origin_s: f64) -> Finding {
     let accepted = bench.accepted[k].clone();
     let card = bench.candidates[accepted.candidate].effect.card;
     let evidence = selection.evidence - select::without(bench, k);
     let rivals = rivals(bench, selection, k);
     let ledger = Ledger::new(&selection.after, |_| true);
     let walk = bench.candidates[accepted.candidate].walk;
-    let (parameters, signal) = match walk {
-        Some((gyro, unit_si, unit)) => {
-            (vec![walk_value(bench, gyro, unit_si, unit)], vec![0.0; selection.after.at.len()])
-        }
-        None => shift_values(bench, &selection.after, &ledger, k),
-    };
+    let (parameters, signal) = stated(bench, selection, &ledger, noise, k);
     let place = if walk.is_some() {
         let first = if walk.is_some_and(|walk| walk.0) { 0 } else { 3 };
         whole_recording(bench, first, origin_s)
@@ -79,6 +77,24 @@ fn finding(bench: &mut Bench, selection: &Selection, k: usize, origin_s: f64) ->
         other_recordings: Vec::new(),
     };
     Finding { found, signal, is_walk: walk.is_some() }
+}
+
+/// An accepted effect's numbers, and its share in every row.
+fn stated(bench: &mut Bench, selection: &Selection, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
+    match bench.candidates[bench.accepted[k].candidate].walk {
+        Some((gyro, unit_si, unit)) => {
+            (vec![walk_value(bench, noise, gyro, unit_si, unit)], vec![0.0; selection.after.at.len()])
+        }
+        None => shift_values(bench, &selection.after, ledger, noise, k),
+    }
+}
+
+/// Ids and numbers of all accepted effects.
+pub fn numbers(bench: &mut Bench, selection: &Selection) -> Vec<(&'static str, Vec<Value>)> {
+    let noise = posterior::noise(bench);
+    let ledger = Ledger::new(&selection.after, |_| true);
+    let id = |bench: &Bench, k: usize| bench.candidates[bench.accepted[k].candidate].effect.card.id;
+    (0..bench.accepted.len()).map(|k| (id(bench, k), stated(bench, selection, &ledger, noise, k).0)).collect()
 }
 
 /// Other effects in its place, by how much less they explain.

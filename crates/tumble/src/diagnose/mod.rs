@@ -11,11 +11,13 @@ pub mod intake;
 mod judge;
 mod limits;
 mod numbers;
+mod posterior;
 pub mod prepare;
 pub mod promise;
 pub mod report;
 mod run;
 pub mod search;
+mod settings;
 pub mod transfer;
 pub mod twin;
 

@@ -5,10 +5,11 @@ use nalgebra::DVector;
 use super::catalogue::Parameter;
 use super::diagnosis::Value;
 use super::search::bench::Bench;
-use super::search::ledger::{Fit, Ledger};
+use super::search::ledger::{Fit, Ledger, Term};
 use super::search::shares::{freed, parameters};
+use super::settings;
 use super::twin::noise::Noise;
-use super::twin::rows::Rows;
+use super::twin::rows::{Class, Rows};
 
 /// θ of an accepted effect: what is in the fit and what was taken out.
 pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
@@ -17,18 +18,23 @@ pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
     DVector::from_fn(parameters(bench, k), |i, _| fit.theta[before + i] + taken[i])
 }
 
-/// An accepted effect's numbers, freed of the prior, and its share in every row.
-pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (Vec<Value>, Vec<f64>) {
-    let fit = ledger.fit(&freed(bench.accepted_terms(None)));
+/// An accepted effect's numbers, freed of the prior, under `noise` (see [`posterior::noise`](super::posterior::noise)), and its
+/// share in every row.
+pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
+    let in_force = std::mem::replace(&mut bench.twin.noise, noise);
+    let settled = settings::settle(bench, ledger, k);
+    let fit = own_fit(bench, k);
+    bench.twin.noise = in_force;
     let total = total(bench, &fit, k);
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let accepted = &bench.accepted[k];
     let placed = &bench.candidates[accepted.candidate].variants[accepted.variant];
     let count = placed.parameters.len();
     let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
-    let (own, covariance) = match &placed.own {
-        Some(own) => (own * &total, own * covariance * own.transpose()),
-        None => (total.clone(), covariance),
+    let (own, covariance) = match (&placed.own, &settled) {
+        (Some(own), _) => (own * &total, own * covariance * own.transpose()),
+        (None, Some(settled)) => (settled.theta.clone(), settled.covariance.clone()),
+        (None, None) => (total.clone(), covariance),
     };
     let value = |(i, parameter): (usize, &Parameter)| Value {
         name: parameter.name.clone(),
@@ -38,7 +44,8 @@ pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (V
     };
     let mut values: Vec<Value> = placed.parameters.iter().enumerate().map(value).collect();
     if let Some((name, value, unit)) = placed.setting {
-        let sigma = setting_sigma(bench, ledger, k);
+        let (value, sigma) = settled
+            .map_or_else(|| (value, settings::sigma(bench, ledger, k)), |settled| (settled.setting, settled.sigma));
         values.push(Value { name: name.into(), value, sigma, unit: unit.into() });
     }
     let signal = (0..rows.at.len())
@@ -47,50 +54,44 @@ pub fn shift_values(bench: &Bench, rows: &Rows, ledger: &Ledger, k: usize) -> (V
     (values, signal)
 }
 
-/// Spread of the setting (a time, a time constant) over the variants, each by its evidence.
-fn setting_sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
-    let accepted = &bench.accepted[k];
-    let mut others = bench.accepted_terms(Some(k));
-    others.extend(bench.put_back(accepted));
-    let variants = &bench.candidates[accepted.candidate].variants;
-    let weights: Vec<(f64, f64)> = (0..variants.len())
-        .filter_map(|variant| {
-            let mut terms = others.clone();
-            // The variant in force: put-back and itself share columns; free ones replace the fixed.
-            terms.retain(|term| !variants[variant].columns.contains(&term.column));
-            let taken: &[f64] = if variant == accepted.variant { &accepted.taken } else { &[] };
-            terms.extend(bench.terms(accepted.candidate, variant, accepted.widening, taken));
-            Some((variants[variant].setting?.1, ledger.fit(&terms).evidence))
-        })
-        .collect();
-    let most = weights.iter().map(|weight| weight.1).fold(f64::NEG_INFINITY, f64::max);
-    let share = |evidence: f64| (evidence - most).exp();
-    let sum: f64 = weights.iter().map(|weight| share(weight.1)).sum();
-    let mean: f64 = weights.iter().map(|weight| weight.0 * share(weight.1)).sum::<f64>() / sum;
-    let spread = weights.iter().map(|w| (w.0 - mean).powi(2) * share(w.1)).sum::<f64>() / sum;
-    // Between two neighbours nothing is known: a step is uniform over its grid.
-    let mut settings: Vec<f64> = weights.iter().map(|weight| weight.0).collect();
-    settings.sort_by(f64::total_cmp);
-    let at = variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
-    let grid = settings.windows(2).filter(|w| w[0] <= at && at <= w[1]).map(|w| w[1] - w[0]).fold(0.0, f64::max);
-    (spread + grid * grid / 12.0).sqrt()
+/// The fit whose numbers are stated, freed of the prior. A lever arm and the Earth's rate are states of the calibration as well:
+/// what is stated is the whole of them, and its sigma that of the whole, not of how the two share it (1.2 cm, 8.7 deg/h).
+fn own_fit(bench: &mut Bench, k: usize) -> Fit {
+    let id = bench.candidates[bench.accepted[k].candidate].effect.card.id;
+    let terms = freed(bench.accepted_terms(None));
+    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+    bench.twin.leave_to_effect(id, true);
+    let rows = bench.rows_of(&columns);
+    bench.twin.leave_to_effect(id, false);
+    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+    Ledger::new(&rows, |_| true).believing(Class::Closure).fit(&local)
 }
 
-/// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm.
-pub fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
-    let noise = bench.twin.noise;
-    let terms = bench.accepted_terms(None);
-    let with = |factor: f64| {
+/// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. Classes of rows scatter beyond it only
+/// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
+pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
+    let terms = freed(bench.accepted_terms(None));
+    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+    let with = |noise: Noise, factor: f64| {
         if gyro {
             Noise { bias_walk: noise.bias_walk * factor, ..noise }
         } else {
             Noise { force_walk: noise.force_walk * factor, ..noise }
         }
     };
-    let mut evidence = |log: f64| bench.fit_alone(with(log.exp()), &terms).evidence;
-    // Newton's method on a parabola through three points, twice.
+    let in_force = bench.twin.noise;
+    bench.twin.noise = noise;
+    let ledger = Ledger::new(&bench.rows_of(&columns), |_| true).believing(Class::Closure);
+    let scales = ledger.certain(&ledger.fit(&local));
+    let mut evidence = |log: f64| {
+        bench.twin.noise = with(noise, log.exp());
+        let rows = bench.rows_of(&columns);
+        Ledger::new(&rows, |_| true).at(&scales).fit(&local).evidence
+    };
+    // Newton's method on a parabola through three points.
     let (mut at, mut sigma_log) = (0.0, 1.0);
-    for step in [0.7, 0.3] {
+    for step in [0.7, 0.4, 0.4] {
         let [low, middle, high] = [at - step, at, at + step].map(&mut evidence);
         let curvature = (2.0 * middle - low - high) / (step * step);
         if curvature <= 0.0 {
@@ -99,7 +100,7 @@ pub fn walk_value(bench: &mut Bench, gyro: bool, unit_si: f64, unit: &'static st
         at += ((high - low) / (2.0 * step) / curvature).clamp(-1.5, 1.5);
         sigma_log = curvature.sqrt().recip();
     }
-    bench.twin.noise = with(at.exp());
+    bench.twin.noise = with(in_force, at.exp());
     bench.wander = (bench.twin.noise.bias_walk, bench.twin.noise.force_walk);
     let density = if gyro { bench.twin.noise.bias_walk } else { bench.twin.noise.force_walk };
     let value = density.sqrt() / unit_si;

@@ -3,6 +3,8 @@
 
 use super::Options;
 use super::catalogue::STRUCTURAL;
+use super::diagnosis::Value;
+use super::findings;
 use super::intake::intake;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
@@ -41,4 +43,12 @@ pub fn of_shapes(recording: &Recording, options: &Options) -> Option<(f64, f64)>
     let mut bench = bench(recording, &knowing(options, |_| false))?;
     bench.twin.noise = select::settle_walks(&mut bench).0;
     Some((unknown::weigh(&mut bench, None).evidence, -FALSE_ALARMS.ln()))
+}
+
+/// The numbers of effects that are known to be there, as a diagnosis would state them: the search as ever, but with nothing else
+/// to choose from and no name challenged. What it does not find is left out.
+pub fn numbers(recording: &Recording, options: &Options, ids: &[&str]) -> Option<Vec<(&'static str, Vec<Value>)>> {
+    let mut bench = bench(recording, &knowing(options, |known| ids.contains(&known)))?;
+    let selection = select::select(&mut bench, options.seed, &mut |_, _| {});
+    Some(findings::numbers(&mut bench, &selection))
 }

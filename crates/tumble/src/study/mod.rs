@@ -7,6 +7,7 @@ pub mod bound;
 pub mod injection;
 pub mod limits;
 pub mod navigation;
+pub mod numbers;
 pub mod paper;
 pub mod parallel;
 pub mod recordings;

@@ -17,9 +17,11 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(twin: &Twin) -> Model {
-    let variant = |from_s: f64| Variant {
-        setting: Some(("at", from_s, "s")),
-        ..accel_axes("mg", 5.0, move |_, moment| if moment.t_s > from_s { 1e-3 * G } else { 0.0 })
-    };
+    let variant = |from_s: f64| Variant { setting: Some(("at", from_s, "s")), ..from(from_s) };
     Model::Shift(jumps(twin).into_iter().map(variant).collect())
+}
+
+/// Of an instant.
+pub(super) fn from(from_s: f64) -> Variant {
+    accel_axes("mg", 5.0, move |_, moment| if moment.t_s > from_s { 1e-3 * G } else { 0.0 })
 }

@@ -20,9 +20,11 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(_: &Twin) -> Model {
-    let variant = |tau_s: f64| Variant {
-        setting: Some(("tau", tau_s, "s")),
-        ..gyro_axes("dps", 0.2, move |_, moment| DPS * (-moment.t_s / tau_s).exp())
-    };
+    let variant = |tau_s: f64| Variant { setting: Some(("tau", tau_s, "s")), ..of(tau_s) };
     Model::Shift(TIMES_S.into_iter().map(variant).collect())
+}
+
+/// Of a time constant.
+pub(super) fn of(tau_s: f64) -> Variant {
+    gyro_axes("dps", 0.2, move |_, moment| DPS * (-moment.t_s / tau_s).exp())
 }

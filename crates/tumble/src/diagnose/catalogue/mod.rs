@@ -139,6 +139,16 @@ pub const STRUCTURAL: [Effect; 23] = [
     earth_rotation::EFFECT,
 ];
 
+/// Of effects whose setting may be any number: what it does at one, for numbers finer than the variants' grid.
+pub fn at_any_setting(id: &str) -> Option<fn(f64) -> Variant> {
+    match id {
+        "gyro_bias_step" => Some(gyro_bias_step::from),
+        "accel_bias_step" => Some(accel_bias_step::from),
+        "gyro_warm_up" => Some(gyro_warm_up::of),
+        _ => None,
+    }
+}
+
 /// Axes' names.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 

@@ -34,6 +34,8 @@ pub struct Ledger {
     log_sigma: f64,
     /// `Eᵢᵀ Eⱼ` of columns i ≤ j.
     products: RefCell<HashMap<(usize, usize), [f64; CLASSES]>>,
+    /// s² where it is not maximised.
+    fixed: [Option<f64>; CLASSES],
 }
 
 /// One column of a model.
@@ -71,13 +73,42 @@ impl Ledger {
             let moments = responses.tr_mul(&values);
             Share { count: chosen.len() as f64, squares: values.norm_squared(), responses, moments }
         });
-        Self { classes, log_sigma: rows.log_sigma, products: RefCell::default() }
+        Self { classes, log_sigma: rows.log_sigma, products: RefCell::default(), fixed: [None; CLASSES] }
     }
 
     fn product(&self, i: usize, j: usize) -> [f64; CLASSES] {
         let key = (i.min(j), i.max(j));
         let made = || self.classes.each_ref().map(|share| share.responses.column(i).dot(&share.responses.column(j)));
         *self.products.borrow_mut().entry(key).or_insert_with(made)
+    }
+
+    /// This class's noise is as believed: the belief itself is what is estimated.
+    #[must_use]
+    pub fn believing(mut self, class: Class) -> Self {
+        Class::ALL
+            .iter()
+            .zip(&mut self.fixed)
+            .filter(|(one, _)| **one == class)
+            .for_each(|(_, fixed)| *fixed = Some(1.0));
+        self
+    }
+
+    /// All classes at these scales.
+    #[must_use]
+    pub fn at(mut self, scales: &[f64; CLASSES]) -> Self {
+        self.fixed = scales.map(Some);
+        self
+    }
+
+    /// A fit's scales where a class scatters more than chance would have it (four sigma of `2/N`), else 1.
+    pub fn certain(&self, fit: &Fit) -> [f64; CLASSES] {
+        let mut scales = fit.scales;
+        for (scale, class) in scales.iter_mut().zip(&self.classes) {
+            if *scale < 1.0 + 4.0 * (2.0 / class.count.max(1.0)).sqrt() {
+                *scale = 1.0;
+            }
+        }
+        scales
     }
 
     /// The model of these terms; an empty one is the null.
@@ -87,7 +118,7 @@ impl Ledger {
             evidence: f64::NEG_INFINITY,
             theta: DVector::zeros(n),
             covariance: DMatrix::zeros(n, n),
-            scales: [1.0; CLASSES],
+            scales: self.fixed.map(|fixed| fixed.unwrap_or(1.0)),
         };
         let (grams, moments) = self.chosen(terms);
         for round in 0..ROUNDS {
@@ -101,7 +132,7 @@ impl Ledger {
             let mut scales = [1.0; CLASSES];
             for (k, class) in self.classes.iter().enumerate() {
                 let left = class.squares - 2.0 * fit.theta.dot(&moments[k]) + fit.theta.dot(&(&grams[k] * &fit.theta));
-                scales[k] = (left / class.count.max(1.0)).max(1.0);
+                scales[k] = self.fixed[k].unwrap_or((left / class.count.max(1.0)).max(1.0));
                 evidence -= 0.5 * (class.count * f64::ln(fit.scales[k]) + left / fit.scales[k]);
             }
             fit.evidence = evidence;

@@ -44,6 +44,8 @@ pub struct Prior {
     pub triangular: bool,
     /// Earth's rate, each component, rad/s.
     pub earth_sigma: f64,
+    /// A lever arm that is nothing to speak of, each component, m.
+    pub lever_sigma_m: f64,
 }
 
 /// A table leans by less than this, rad (6°), and so does what lies on it.
@@ -62,7 +64,7 @@ impl Prior {
         state.reset(state::ACCEL, 9, CORRECTION_SIGMA);
         state.reset(state::GYRO_BIAS, 3, GYRO_BIAS_SIGMA);
         state.reset(state::ACCEL_BIAS, 3, ACCEL_BIAS_SIGMA);
-        state.reset(state::LEVER, 3, noise::LEVER_SIGMA_M);
+        state.reset(state::LEVER, 3, self.lever_sigma_m);
         let difference = [
             (state::GYRO, state::by_rows(&(self.start.gyro - nominal.gyro)).collect()),
             (state::ACCEL, state::by_rows(&(self.start.accel - nominal.accel)).collect::<Vec<_>>()),
@@ -126,7 +128,8 @@ impl Twin {
     ) -> Self {
         let gravity_mps2 = f64::from(conditions.gravity_mps2);
         let triangular = conditions.faces == BoxFaces::Unknown;
-        let prior = Prior { start, triangular, earth_sigma: EARTH_SIGMA };
+        let lever_sigma_m = noise::LEVER_SIGMA_M;
+        let prior = Prior { start, triangular, earth_sigma: EARTH_SIGMA, lever_sigma_m };
         let trajectory = Trajectory::new(&samples, &stretches, &start, gravity_mps2);
         let mut twin = Self {
             samples,
@@ -170,6 +173,15 @@ impl Twin {
     fn follow(&mut self) {
         self.trajectory = Trajectory::new(&self.samples, &self.stretches, &self.nominal, self.gravity_mps2);
         self.steps = Steps::new(&self.samples, &self.stretches, &self.trajectory, &self.nominal, self.gravity_mps2);
+    }
+
+    /// Lever arm and Earth as the calibration's own states, as ever, or (`named`) as an effect's numbers and nothing else.
+    pub fn leave_to_effect(&mut self, id: &str, named: bool) {
+        match id {
+            "accel_lever_arm" => self.prior.lever_sigma_m = if named { 0.0 } else { noise::LEVER_SIGMA_M },
+            "earth_rotation" => self.prior.earth_sigma = if named { 0.0 } else { EARTH_SIGMA },
+            _ => {}
+        }
     }
 
     /// Gauss–Newton from where it stands.

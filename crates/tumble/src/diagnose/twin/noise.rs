@@ -31,6 +31,8 @@ pub struct Noise {
     pub stop_sigma_rad: f64,
     /// rad; none where the box is not known to be square.
     pub facet_sigma_rad: Option<f64>,
+    /// How far a turn's axis is from where other turns have it, m.
+    pub pivot_sigma_m: f64,
 }
 
 /// Least wander that is taken for granted: 1 mdps and 10 µg in 100 s.
@@ -72,6 +74,7 @@ impl Noise {
             motion_scale: f64::from(device.motion_scale).max(1.0),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
+            pivot_sigma_m: PIVOT_SIGMA_M,
         }
     }
 }

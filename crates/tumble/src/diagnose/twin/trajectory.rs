@@ -112,6 +112,8 @@ pub struct Trajectory {
     pub levelled: Vec<Vector3<f64>>,
     /// Variance of noise in [`Moment::mean_rate`], (rad/s)².
     pub mean_rate_variance: Vector3<f64>,
+    /// Variance of noise in [`Moment::rate`], (rad/s)².
+    pub rate_variance: Vector3<f64>,
 }
 
 impl Trajectory {
@@ -132,7 +134,8 @@ impl Trajectory {
             moments: Vec::with_capacity(samples.len()),
         };
         let levelled = stretches.iter().map(|stretch| walker.walk(stretch)).collect();
-        Self { levelled, mean_rate_variance: walker.noise.mean, moments: walker.moments }
+        let Quiet { scatter: rate_variance, mean: mean_rate_variance, .. } = walker.noise;
+        Self { levelled, mean_rate_variance, rate_variance, moments: walker.moments }
     }
 }
 
@@ -266,27 +269,40 @@ struct Window {
 struct Quiet {
     /// Mean scatter.
     scatter: Vector3<f64>,
+    /// What it may be by chance: five sigma above its mean.
+    chance: Vector3<f64>,
     /// Variance of the means.
     mean: Vector3<f64>,
 }
 
 impl Quiet {
     fn of(stretches: &[Stretch], windows: &[Window]) -> Self {
-        let (mut scatter, mut mean, mut count) = (Vector3::zeros(), Vector3::zeros(), 0.0);
+        let (mut scatter, mut squares, mut mean) = (Vector3::zeros(), Vector3::zeros(), Vector3::zeros());
+        let mut count = 0.0;
         for stretch in stretches.iter().filter(|stretch| matches!(stretch.deed, Deed::Rest { .. })) {
             let windows = &windows[stretch.samples.clone()];
             let middle = windows.iter().map(|window| window.mean).sum::<Vector3<f64>>() / windows.len() as f64;
             for window in windows {
                 scatter += window.scatter;
+                squares += window.scatter.map(|v| v * v);
                 mean += (window.mean - middle).map(|v| v * v);
                 count += 1.0;
             }
         }
-        Self { scatter: scatter / f64::max(count, 1.0), mean: mean / f64::max(count, 1.0) }
+        let share = 1.0 / f64::max(count, 1.0);
+        let scatter = scatter * share;
+        let chance =
+            scatter.zip_map(&(squares * share), |mean, square| mean + 5.0 * (square - mean * mean).max(0.0).sqrt());
+        Self { scatter, chance, mean: mean * share }
     }
 
+    /// Noise's own scatter differs from window to window by a third: taken for tremor, half of all windows trembled.
     fn tremor(&self, window: &Window) -> Vector3<f64> {
-        Vector3::from_fn(|i, _| ((window.scatter[i] - self.scatter[i]).max(0.0) + self.mean[i]).sqrt())
+        Vector3::from_fn(|i, _| {
+            let trembles = window.scatter[i] > self.chance[i];
+            let beyond = if trembles { window.scatter[i] - self.scatter[i] } else { 0.0 };
+            (beyond + self.mean[i]).sqrt()
+        })
     }
 }
 

@@ -120,7 +120,7 @@ impl<'a> Walk<'a> {
             (visit, _) => *visit = None,
         }
         if turn {
-            self.state.reset(state::PIVOT, 3, noise::PIVOT_SIGMA_M);
+            self.state.reset(state::PIVOT, 3, self.pass.noise.pivot_sigma_m);
         }
         for index in steps {
             let step = &self.pass.steps.all[index];

@@ -1,0 +1,100 @@
+//! Noise given what was found: numbers and their sigmas rest on it.
+//!
+//! The search takes the noise that has most evidence, of a few: stops for what their owner says or for what the board's
+//! estimator took them for (`Noise::trusting`; the one is a guess, in the other an effect passes for sloppy stops), biases that
+//! wander by one of three healthy levels. That is good enough to compare models, which all have it. A sigma that rests on 12
+//! closures is wrong by as much: the truth of a fence of ±0.1° is 0.058°, and taken for 0.05° an asymmetry of the scale was off
+//! by 1.17 sigmas (root mean square; 0.65 where stops were exact). So each variance has a posterior of its own beside the
+//! accepted effects, over a grid uniform in its logarithm. All covariances are linear in it, so that its mean stands for it,
+//! as in the device's `closures.rs`.
+
+use tumble_core::setup::TurnStops;
+
+use super::search::bench::{Bench, HEALTHY};
+use super::search::ledger::{Ledger, Term};
+use super::search::shares::freed;
+use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise, PIVOT_SIGMA_M};
+use super::twin::rows::Class;
+
+/// Steps of √2 from the least sigma of a stop, deg: to 0.4° against a fence, to 9° by hand.
+const STOP_STEPS: i32 = 11;
+const LEAST_FENCED_DEG: f64 = 0.0125;
+const LEAST_BY_HAND_DEG: f64 = 0.28;
+/// Steps by 10^(1/3) in variance over what a healthy bias wanders.
+const WALK_STEPS: i32 = 7;
+/// Halves of twice what a turn's axis is taken to move: 10 mm to 0.3 mm. Only a lever arm's numbers rest on it.
+const PIVOT_STEPS: i32 = 6;
+
+/// The noise in force, with stops and healthy wander as the accepted effects leave them.
+pub fn noise(bench: &mut Bench) -> Noise {
+    let in_force = bench.twin.noise;
+    let least_deg = if bench.twin.stops == TurnStops::Fenced { LEAST_FENCED_DEG } else { LEAST_BY_HAND_DEG };
+    let stop = |step: i32| (least_deg.to_radians() * 2f64.powf(0.5 * f64::from(step))).powi(2);
+    let mut noise = in_force;
+    noise.stop_sigma_rad =
+        mean(bench, (0..STOP_STEPS).map(stop), |variance| Noise { stop_sigma_rad: variance.sqrt(), ..noise })
+            .map_or(noise.stop_sigma_rad, f64::sqrt);
+    let [wanders, force_wanders] = [true, false].map(|gyro| is_walk(bench, gyro));
+    let levels = |floor: f64| {
+        let whole = (HEALTHY[2] / HEALTHY[0]).ln() / f64::from(WALK_STEPS - 1);
+        (0..WALK_STEPS).map(move |step| floor * (whole * f64::from(step)).exp())
+    };
+    if !wanders {
+        let found = mean(bench, levels(BIAS_WALK_FLOOR), |bias_walk| Noise { bias_walk, ..noise });
+        noise.bias_walk = found.unwrap_or(noise.bias_walk);
+    }
+    if !force_wanders {
+        let found = mean(bench, levels(FORCE_WALK_FLOOR), |force_walk| Noise { force_walk, ..noise });
+        noise.force_walk = found.unwrap_or(noise.force_walk);
+    }
+    let levers = ["accel_lever_arm", "accel_internal_lever_arms"];
+    if bench.accepted.iter().any(|one| levers.contains(&bench.candidates[one.candidate].effect.card.id)) {
+        let pivot = |step: i32| (PIVOT_SIGMA_M * 2f64.powi(1 - step)).powi(2);
+        let found =
+            mean(bench, (0..PIVOT_STEPS).map(pivot), |variance| Noise { pivot_sigma_m: variance.sqrt(), ..noise });
+        noise.pivot_sigma_m = found.map_or(noise.pivot_sigma_m, f64::sqrt);
+    }
+    bench.twin.noise = in_force;
+    noise
+}
+
+fn is_walk(bench: &Bench, gyro: bool) -> bool {
+    bench.accepted.iter().any(|one| bench.candidates[one.candidate].walk.is_some_and(|walk| walk.0 == gyro))
+}
+
+/// Mean of a variance by the evidence of the noise that it makes; none where the rows break down.
+fn mean(bench: &mut Bench, variances: impl Iterator<Item = f64>, noise: impl Fn(f64) -> Noise) -> Option<f64> {
+    let terms = freed(bench.accepted_terms(None));
+    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+    let weighed: Vec<(f64, f64)> = variances
+        .map(|variance| {
+            bench.twin.noise = noise(variance);
+            let rows = bench.rows_of(&columns);
+            (variance, Ledger::new(&rows, |_| true).believing(Class::Closure).fit(&local).evidence)
+        })
+        .collect();
+    by_evidence(&weighed)
+}
+
+fn by_evidence(weighed: &[(f64, f64)]) -> Option<f64> {
+    let most = weighed.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
+    if !most.is_finite() {
+        return None;
+    }
+    let share = |evidence: f64| (evidence - most).exp();
+    let sum: f64 = weighed.iter().map(|one| share(one.1)).sum();
+    Some(weighed.iter().map(|one| one.0 * share(one.1)).sum::<f64>() / sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::by_evidence;
+
+    #[test]
+    fn a_mean_by_evidence() {
+        let found = by_evidence(&[(1.0, -500.0), (3.0, -500.0), (100.0, -600.0)]).expect("it is finite");
+        assert!((found - 2.0).abs() < 1e-12);
+        assert_eq!(by_evidence(&[(1.0, f64::NEG_INFINITY)]), None);
+    }
+}
