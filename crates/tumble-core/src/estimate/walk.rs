@@ -265,14 +265,24 @@ impl<const S: usize> Walk<S> {
         if group.records == 0 {
             return;
         }
+        let density = self.rate_density(segment, noise);
+        group.propagate(&mut self.filter, density);
         let own = &self.noise[self.segment];
-        group.propagate(&mut self.filter, noise.rate_density * noise.motion_scale * own.rate_scale);
         if matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None {
             let variance = noise.force_density / group.seconds * own.force_scale;
-            let innovations = group.observe(&mut self.filter, self.gravity, variance);
+            let rounding = noise.force_rounding * segment.duration_s() / group.seconds;
+            let innovations = group.observe(&mut self.filter, self.gravity, variance + rounding);
             innovations.iter().for_each(|innovation| self.turn_noise.take(innovation, variance));
             self.plate_in_turn(segment, &group, noise);
         }
+    }
+
+    /// Variance of a rotation per second of this move. A steady turn holds its rates as a rest does, and what rounding leaves in
+    /// them is coherent: as white noise it has its variance times the turn's length. A hand's move sweeps over many steps.
+    fn rate_density(&self, segment: &Segment, noise: &Noise) -> f32 {
+        let own = noise.rate_density * noise.motion_scale * self.noise[self.segment].rate_scale;
+        let steady = matches!(segment.kind, Kind::OnTable { .. });
+        own + if steady { noise.rate_rounding * segment.duration_s() } else { 0.0 }
     }
 
     /// The face that a turn is made on stays in the table's plane but for a wobble. What of that does not turn with the box is
@@ -290,7 +300,7 @@ impl<const S: usize> Walk<S> {
         let readings = f32::from(segment.end - segment.first) / f32::from(GROUP * PLATED);
         let [wobble, rocking] = [noise.wobble_sigma_rad, noise.rocking_sigma_rad].map(|sigma| sigma * sigma);
         let rocking = (rocking + UNSTEADY * wobble) * readings.max(1.0);
-        let loose = self.loose(noise);
+        let loose = self.loose(segment, noise);
         let plane = visit.face.plane().map(|axis| self.attitude * axis);
         for Observation { residual, row } in model::plate_in_turn(&normal, &plane, &since) {
             let innovation = self.filter.observe(&row, residual, WHITE * WHITE + rocking);
@@ -300,14 +310,14 @@ impl<const S: usize> Walk<S> {
 
     /// What gyroscope and gravity alone leave unknown of the attitude in a turn, rad²: `√(q r)`. That the wobble is given more variance
     /// than it has, and K a prior thirty sigma wide, makes the filter's own variances larger than errors are.
-    fn loose(&self, noise: &Noise) -> f32 {
-        let own = &self.noise[self.segment];
-        let rate = noise.rate_density * noise.motion_scale * own.rate_scale;
-        libm::sqrtf(rate * noise.force_density * own.force_scale) / self.gravity
+    fn loose(&self, segment: &Segment, noise: &Noise) -> f32 {
+        let force = noise.force_density * self.noise[self.segment].force_scale;
+        let force = force + noise.force_rounding * segment.duration_s();
+        libm::sqrtf(self.rate_density(segment, noise) * force) / self.gravity
     }
 
-    fn learn_wobble(&mut self, noise: &Noise) {
-        let loose = self.loose(noise);
+    fn learn_wobble(&mut self, segment: &Segment, noise: &Noise) {
+        let loose = self.loose(segment, noise);
         for index in Block::Wobble.range() {
             let (mean, variance) = (self.filter.state()[index], self.filter.covariance()[(index, index)]);
             self.wobble.take_turn(mean, variance, noise.wobble_sigma_rad * noise.wobble_sigma_rad, loose);
@@ -327,15 +337,15 @@ impl<const S: usize> Walk<S> {
             && segment.exclusion == Exclusion::None
         {
             self.learn_pivot(noise);
-            self.learn_wobble(noise);
+            self.learn_wobble(segment, noise);
             if let Some((excess, _)) = self.turn_noise.value().filter(|_| self.adapting) {
                 let scale = &mut self.noise[self.segment].force_scale;
                 *scale = (*scale * (1.0 + excess)).clamp(1.0, 1e6);
             }
+            let own = self.rate_density(segment, noise) * self.move_s;
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
-                visit.noise +=
-                    noise.rate_density * noise.motion_scale * self.noise[self.segment].rate_scale * self.move_s;
+                visit.noise += own;
             }
         }
     }

@@ -32,7 +32,8 @@ impl<const S: usize> Walk<S> {
             self.noise[self.segment].force_scale = own.max(1.0);
         }
         let (scale, duration_s) = (self.noise[self.segment].force_scale, segment.duration_s());
-        let variance = noise.force_density * scale / (duration_s * self.gravity * self.gravity);
+        let own = noise.force_density * scale / duration_s + noise.force_rounding;
+        let variance = own / (self.gravity * self.gravity);
         self.level(&self.nominal.accel.compensate(&force), variance, noise);
         if noise::is_solid(segment, noise.quiet_variance) {
             let rate = crate::motion::segmenter::mean_rate(tape, first, end) - self.nominal.gyro.bias;
@@ -164,7 +165,9 @@ impl<const S: usize> Walk<S> {
         }
         let to_n = self.attitude.to_rotation_matrix().into_inner();
         let own = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
-        let variance = own + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
+        // Coherent over the rest: as white noise it has its variance times the number of records.
+        let rounding = noise.force_rounding * segment.duration_s() / record.dt_s;
+        let variance = own + rounding + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         let observation = parts.observation(self.gravity, None);
@@ -184,7 +187,8 @@ impl<const S: usize> Walk<S> {
 
     fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
         let rounded = ANGLE_UNIT_RAD / record.dt_s;
-        let variance = noise.rate_density / record.dt_s + ROUNDED * rounded * rounded;
+        let density = noise.rate_density + noise.rate_rounding * noise.solid_s;
+        let variance = density / record.dt_s + ROUNDED * rounded * rounded;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let observation = self.now.rest_rate(record, to_b);
