@@ -36,13 +36,12 @@ const LAST_ADAPTING: u32 = 14;
 const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
-/// Sigmas from which a walk is believed in. The sum of a session's 17 squared innovations is χ²₁₇ without one, and exceeds its
-/// mean by four of its sigma (40.3) once in 800 sessions.
-const WALK_CERTAIN: f32 = 4.0;
+/// Upper point of the normal distribution from which a walk is believed in: without one, once in a thousand sessions.
+const WALK_CERTAIN: f32 = 3.09;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
-/// Degrees of freedom of the Student's t distribution that moves are taken to follow: heavy tails, gentle weights.
-const STUDENT: f32 = 4.0;
+/// Share of moves that are taken to be disturbed, over the logarithm of the most by which their variance may be larger (1e4).
+const DISTURBED: f32 = 0.05 / 9.21;
 
 /// What the session was told.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,7 +190,7 @@ impl<const S: usize> Estimator<S> {
             return;
         }
         let sums = self.walk.sums;
-        let probable = sums.rate_walk.value().is_some_and(|(value, sigma)| value > SIGNIFICANT * sigma);
+        let probable = sums.rate_walk.exceeds(SIGNIFICANT);
         self.bias_wanders = probable || self.noise.has_bias_walk();
         if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
@@ -238,7 +237,6 @@ impl<const S: usize> Estimator<S> {
 
     fn settle_stops(&mut self) {
         let walk = &mut self.walk;
-        walk.closures.end_visit(self.noise.stop_sigma_rad * self.noise.stop_sigma_rad);
         let scales = core::array::from_fn(|axis| {
             let index = Block::GyroCorrection.start() + 4 * axis;
             (walk.filter.state()[index], walk.filter.covariance()[(index, index)])
@@ -267,9 +265,7 @@ impl<const S: usize> Estimator<S> {
         self.noise.motion_scale *= excess;
         let mut steady = true;
         for noise in &mut self.walk.noise {
-            let nis = noise.hinge_nis / excess;
-            // Not a number for a move without rests on both sides, which `max` turns into 1.
-            let scale = ((STUDENT + nis) / (STUDENT + 2.0)).max(1.0);
+            let scale = disturbance(noise.hinge_nis / excess);
             steady &= libm::fabsf(scale - noise.rate_scale) < NOISE_SETTLED * scale;
             noise.rate_scale = scale;
         }
@@ -350,9 +346,25 @@ impl<const S: usize> Estimator<S> {
     }
 }
 
+/// By how much more variance than other moves' one is to be taken, whose level error is `nis` (χ²₂ if it is like the others). One in
+/// twenty is taken to be disturbed, its variance s times as large, ln s uniform up to ln 1e4. With `a = χ²/2` the likelihoods are
+/// `e^−a` and, over u = 1/s, `∫ e^−au du = (1 − e^−a)/a`; the mean of u, by which the move's information is to be multiplied, has
+/// `∫ u e^−au du = (1 − (1 + a) e^−a)/a²`. What lies within χ²₂ is left alone, what lies far out gets a variance of χ²/2.
+fn disturbance(nis: f32) -> f32 {
+    let a = 0.5 * nis;
+    // Not a number for a move without rests on both sides. Below a tenth of a sigma both integrals are constants.
+    if !(a > 0.1) {
+        return 1.0;
+    }
+    let like = libm::expf(-a);
+    let usual = (1.0 - 0.05) * like;
+    let disturbed = DISTURBED * (1.0 - like) / a;
+    (usual + disturbed) / (usual + DISTURBED * (1.0 - (1.0 + a) * like) / (a * a))
+}
+
 /// How much more a bias wanders, or a face is off, than it is taken to. Neither is believed before it is certain: to believe
 /// in a walk that is not there costs the accelerometer a factor of four.
 fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
-    let (value, sigma) = excess.value()?;
-    (believed || value > WALK_CERTAIN * sigma).then_some(value)
+    let (value, _) = excess.value()?;
+    (believed || excess.exceeds(WALK_CERTAIN)).then_some(value)
 }

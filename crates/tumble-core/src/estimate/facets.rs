@@ -67,6 +67,6 @@ impl Facets {
         let likeliest = (squares / freedom - noise).max(0.0);
         let certain = 2.0 * (log(likeliest) - log(0.0)) > CERTAIN;
         let grid = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
-        certain.then(|| mean_variance(grid, |_, variance| log(variance)))
+        certain.then(|| mean_variance(grid, 1.0, |_, variance| log(variance)))
     }
 }

@@ -69,6 +69,8 @@ pub struct Walk<const S: usize> {
     group: Group,
     /// How much noisier its readings are than they are taken to be.
     turn_noise: Excess,
+    /// What the last pass's turns had in common of that: see [`Pool::prior`](super::sums::Pool::prior).
+    turn_prior: Option<(f32, f32)>,
     /// Groups of this turn since the plate was last looked at.
     unplated: u16,
     last_rest_us: u64,
@@ -95,6 +97,8 @@ struct Visit {
     /// Rotation since the last stop that counted, rad, and the gyroscope's variance in it, rad².
     turned_rad: f32,
     noise: f32,
+    /// What the last closure left, rad.
+    residual: f32,
 }
 
 impl<const S: usize> Walk<S> {
@@ -125,6 +129,7 @@ impl<const S: usize> Walk<S> {
             visit: None,
             group: Group::default(),
             turn_noise: Excess::default(),
+            turn_prior: None,
             unplated: 0,
             last_rest_us: 0,
             hinge: None,
@@ -143,6 +148,7 @@ impl<const S: usize> Walk<S> {
     pub fn restart(&mut self, nominal: Nominal, prior: &Filter) {
         self.filter.clone_from(prior);
         self.width = widest(prior, self.gravity);
+        self.turn_prior = self.sums.turn_noise.prior();
         (self.sums, self.closures, self.facets) = (Sums::default(), Closures::default(), Facets::default());
         (self.drift, self.wobble) = (Drift::default(), Wobble::default());
         (self.plated, self.coarse, self.aligned, self.table_known) = (true, true, false, false);
@@ -205,13 +211,13 @@ impl<const S: usize> Walk<S> {
             (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
             (0..2).for_each(|axis| self.filter.reset(Block::Wobble, axis, 0.0, noise.wobble_sigma_rad));
         } else {
-            self.end_visit(noise);
+            self.end_visit();
         }
         self.move_s = 0.0;
         if matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap) {
             self.aligned = false;
             self.hinge = None;
-            self.end_visit(noise);
+            self.end_visit();
         }
     }
 
@@ -338,16 +344,26 @@ impl<const S: usize> Walk<S> {
         {
             self.learn_pivot(noise);
             self.learn_wobble(segment, noise);
-            if let Some((excess, _)) = self.turn_noise.value().filter(|_| self.adapting) {
-                let scale = &mut self.noise[self.segment].force_scale;
-                *scale = (*scale * (1.0 + excess)).clamp(1.0, 1e6);
-            }
+            self.learn_turn_noise();
             let own = self.rate_density(segment, noise) * self.move_s;
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
                 visit.noise += own;
             }
         }
+    }
+
+    /// In logarithms, the turn's own factor between what the turns of the last pass had in common and what it shows itself.
+    fn learn_turn_noise(&mut self) {
+        let Some((excess, sigma)) = self.turn_noise.value().filter(|_| self.adapting) else { return };
+        let scale = &mut self.noise[self.segment].force_scale;
+        // A turn of ten seconds knows its factor to a sixth; a tenth is far off, where the logarithm is no longer straight.
+        let own = (1.0 + excess).max(0.1);
+        let (value, variance) = (libm::logf(*scale * own), sigma * sigma / (own * own));
+        self.sums.turn_noise.take(value, variance);
+        let (mean, apart) = self.turn_prior.unwrap_or((value, f32::INFINITY));
+        let share = if apart < f32::INFINITY { apart / (apart + variance) } else { 1.0 };
+        *scale = libm::expf(mean + share * (value - mean) + 0.5 * share * variance).clamp(1.0, 1e6);
     }
 
     /// A pivot's estimate has variance `σ² − P` if pivots have variance σ², P being what is left of it.

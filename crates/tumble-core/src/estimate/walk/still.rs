@@ -49,14 +49,14 @@ impl<const S: usize> Walk<S> {
             self.plate(face, noise);
             self.stop(face, noise);
         } else {
-            self.end_visit(noise);
+            self.end_visit();
         }
     }
 
     /// Its closures are counted.
-    pub(super) fn end_visit(&mut self, noise: &Noise) {
+    pub(super) fn end_visit(&mut self) {
         self.visit = None;
-        self.closures.end_visit(noise.stop_sigma_rad * noise.stop_sigma_rad);
+        self.closures.end_visit();
     }
 
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
@@ -138,7 +138,8 @@ impl<const S: usize> Walk<S> {
                 let whole = libm::roundf(visit.turned_rad / core::f32::consts::TAU) * core::f32::consts::TAU;
                 let own = core::mem::take(&mut visit.noise);
                 visit.turned_rad = 0.0;
-                self.closures.take(face.axis(), -whole, observation.residual, own);
+                let left = observation.residual - core::mem::replace(&mut visit.residual, observation.residual);
+                self.closures.take(face.axis(), -whole, left, own, variance);
                 self.close(&observation, variance);
             }
             // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
@@ -146,9 +147,9 @@ impl<const S: usize> Walk<S> {
                 return;
             }
         }
-        self.end_visit(noise);
+        self.end_visit();
         self.filter.copy_to(Block::Fence, 0, &model::heading(&normal), 0.0, variance);
-        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0 });
+        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0, residual: 0.0 });
     }
 
     fn close(&mut self, observation: &Observation, variance: f32) {
