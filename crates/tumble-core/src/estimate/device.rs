@@ -97,8 +97,8 @@ pub struct Estimator<const S: usize> {
     start: Nominal,
     walk: Walk<S>,
     passes: u32,
-    /// By what factors the last pass changed the wobble's sigmas.
-    wobble_steps: [f32; 2],
+    /// By what factors the last pass changed the sigmas of wobble and stops.
+    steps: [f32; 3],
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
     /// It has certainly drifted.
@@ -127,7 +127,7 @@ impl<const S: usize> Estimator<S> {
             start,
             walk,
             passes: 0,
-            wobble_steps: [1.0; 2],
+            steps: [1.0; 3],
             bias_wanders: false,
             slope_certain: false,
         }
@@ -201,8 +201,7 @@ impl<const S: usize> Estimator<S> {
         if let Some((excess, _)) = sums.pivot.value() {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
-        self.settle_stops();
-        self.settle_wobble();
+        self.settle();
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }
@@ -221,12 +220,13 @@ impl<const S: usize> Estimator<S> {
         }
     }
 
-    /// Both parts of a wobble. A plate believed less shows smaller residuals, and then is believed more: where a step would take
-    /// the last one back, half of it is made (in the logarithm), which ends the swing.
-    fn settle_wobble(&mut self) {
-        let found = [self.walk.wobble.turning(), self.walk.wobble.rest()];
-        let sigmas = [&mut self.noise.wobble_sigma_rad, &mut self.noise.rocking_sigma_rad];
-        for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.wobble_steps) {
+    /// Both parts of a wobble, and stops. A plate or a fence believed less shows smaller residuals, and then is believed more: where
+    /// a step would take the last one back, half of it is made (in the logarithm), which ends the swing.
+    fn settle(&mut self) {
+        let found = [self.walk.wobble.turning(), self.walk.wobble.rest(), self.stops()];
+        let noise = &mut self.noise;
+        let sigmas = [&mut noise.wobble_sigma_rad, &mut noise.rocking_sigma_rad, &mut noise.stop_sigma_rad];
+        for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.steps) {
             let Some(found) = found else { continue };
             let step = libm::sqrtf(found) / *sigma;
             let back = (step - 1.0) * (*last - 1.0) < 0.0;
@@ -235,15 +235,13 @@ impl<const S: usize> Estimator<S> {
         }
     }
 
-    fn settle_stops(&mut self) {
-        let walk = &mut self.walk;
+    fn stops(&self) -> Option<f32> {
+        let filter = &self.walk.filter;
         let scales = core::array::from_fn(|axis| {
             let index = Block::GyroCorrection.start() + 4 * axis;
-            (walk.filter.state()[index], walk.filter.covariance()[(index, index)])
+            (filter.state()[index], filter.covariance()[(index, index)])
         });
-        if let Some(variance) = walk.closures.variance(self.conditions.stops, &scales) {
-            self.noise.stop_sigma_rad = libm::sqrtf(variance);
-        }
+        self.walk.closures.variance(self.conditions.stops, &scales)
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
