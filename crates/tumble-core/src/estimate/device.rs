@@ -11,7 +11,7 @@ use super::noise::Noise;
 use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
-use super::sums::{Excess, SegmentNoise};
+use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::EARTH_SIGMA;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
@@ -99,6 +99,10 @@ pub struct Estimator<const S: usize> {
     passes: u32,
     /// By what factors the last pass changed the sigmas of wobble and stops.
     steps: [f32; 3],
+    /// Was the last pass certain that the gyroscope's bias walks, and the accelerometer's? Neither is believed before two passes in a row
+    /// say so: to believe in a walk that is not there costs the accelerometer a factor of four, and the first pass that judges stands
+    /// on noise that has not settled.
+    walks: [bool; 2],
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
     /// It has certainly drifted.
@@ -128,6 +132,7 @@ impl<const S: usize> Estimator<S> {
             walk,
             passes: 0,
             steps: [1.0; 3],
+            walks: [false; 2],
             bias_wanders: false,
             slope_certain: false,
         }
@@ -192,10 +197,13 @@ impl<const S: usize> Estimator<S> {
         let sums = self.walk.sums;
         let probable = sums.rate_walk.exceeds(SIGNIFICANT);
         self.bias_wanders = probable || self.noise.has_bias_walk();
-        if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
+        let certain = [&sums.rate_walk, &sums.force_walk].map(|walk| walk.exceeds(WALK_CERTAIN));
+        let [rate, force] = core::array::from_fn(|walk| certain[walk] && self.walks[walk]);
+        self.walks = certain;
+        if let Some((excess, _)) = sums.rate_walk.value().filter(|_| rate || self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
         }
-        if let Some(excess) = walk_excess(&sums.force_walk, self.noise.has_force_walk()) {
+        if let Some((excess, _)) = sums.force_walk.value().filter(|_| force || self.noise.has_force_walk()) {
             self.noise.set_force_walk(self.noise.force_walk + excess);
         }
         if let Some((excess, _)) = sums.pivot.value() {
@@ -358,11 +366,4 @@ fn disturbance(nis: f32) -> f32 {
     let usual = (1.0 - 0.05) * like;
     let disturbed = DISTURBED * (1.0 - like) / a;
     (usual + disturbed) / (usual + DISTURBED * (1.0 - (1.0 + a) * like) / (a * a))
-}
-
-/// How much more a bias wanders, or a face is off, than it is taken to. Neither is believed before it is certain: to believe
-/// in a walk that is not there costs the accelerometer a factor of four.
-fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
-    let (value, _) = excess.value()?;
-    (believed || excess.exceeds(WALK_CERTAIN)).then_some(value)
 }
