@@ -6,6 +6,7 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
+use super::facets::SQUARE;
 use super::model::Nominal;
 use super::noise::Noise;
 use super::prior::{self, CORRECTION_SIGMA};
@@ -99,6 +100,8 @@ pub struct Estimator<const S: usize> {
     passes: u32,
     /// By what factors the last pass changed the sigmas of wobble and stops.
     steps: [f32; 3],
+    /// … and of a face.
+    facet_step: f32,
     /// Was the last pass certain that the gyroscope's bias walks, and the accelerometer's? Neither is believed before two passes in a row
     /// say so: to believe in a walk that is not there costs the accelerometer a factor of four, and the first pass that judges stands
     /// on noise that has not settled.
@@ -132,6 +135,7 @@ impl<const S: usize> Estimator<S> {
             walk,
             passes: 0,
             steps: [1.0; 3],
+            facet_step: 1.0,
             walks: [false; 2],
             bias_wanders: false,
             slope_certain: false,
@@ -223,8 +227,12 @@ impl<const S: usize> Estimator<S> {
             self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
         }
         // The start is 20 mrad off, which is no box's fault; the first pass leaves its square, 0.4 mrad.
-        if self.passes > 1 {
-            self.noise.set_facet_variance(self.walk.facets.variance());
+        if self.passes > 1
+            && let Some(sigma) = &mut self.noise.facet_sigma_rad
+        {
+            let (found, crooked) = self.walk.facets.variance().unwrap_or((SQUARE * SQUARE, false));
+            damp(sigma, libm::sqrtf(found), &mut self.facet_step);
+            self.noise.crooked = crooked;
         }
     }
 
@@ -235,11 +243,9 @@ impl<const S: usize> Estimator<S> {
         let noise = &mut self.noise;
         let sigmas = [&mut noise.wobble_sigma_rad, &mut noise.rocking_sigma_rad, &mut noise.stop_sigma_rad];
         for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.steps) {
-            let Some(found) = found else { continue };
-            let step = libm::sqrtf(found) / *sigma;
-            let back = (step - 1.0) * (*last - 1.0) < 0.0;
-            *last = if back { libm::sqrtf(step) } else { step };
-            *sigma *= *last;
+            if let Some(found) = found {
+                damp(sigma, libm::sqrtf(found), last);
+            }
         }
     }
 
@@ -350,6 +356,14 @@ impl<const S: usize> Estimator<S> {
             turn_closure_rms_rad: libm::sqrtf(sums.closed.0 / sums.closed.1.max(1.0)),
         }
     }
+}
+
+/// Brings a sigma to what was found; `last` is the last pass's factor.
+fn damp(sigma: &mut f32, found: f32, last: &mut f32) {
+    let step = found / *sigma;
+    let back = (step - 1.0) * (*last - 1.0) < 0.0;
+    *last = if back { libm::sqrtf(step) } else { step };
+    *sigma *= *last;
 }
 
 /// By how much more variance than other moves' one is to be taken, whose level error is `nis` (χ²₂ if it is like the others). One in

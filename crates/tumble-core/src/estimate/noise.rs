@@ -62,6 +62,8 @@ pub struct Noise {
     pub pivot_sigma_m: f32,
     /// One face of the box, rad; none where it is not known to be square.
     pub facet_sigma_rad: Option<f32>,
+    /// Are faces certain not to be square?
+    pub crooked: bool,
     /// How far the face that a turn is made on leaves the table during the turn, rad: what turns with the box …
     pub wobble_sigma_rad: f32,
     /// … and the rest.
@@ -111,6 +113,7 @@ impl Noise {
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
+            crooked: false,
             facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
             wobble_sigma_rad: UNSEEN,
             rocking_sigma_rad: UNSEEN,
@@ -169,16 +172,9 @@ impl Noise {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
-    /// The box is not as square as its owner said, or it is.
-    pub fn set_facet_variance(&mut self, found: Option<f32>) {
-        if let Some(sigma) = &mut self.facet_sigma_rad {
-            *sigma = found.map_or(SQUARE, libm::sqrtf);
-        }
-    }
-
-    /// How crooked the box was found to be, rad, if it was called square and is not.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        self.facet_sigma_rad.filter(|sigma| *sigma > SQUARE)
+        self.facet_sigma_rad.filter(|_| self.crooked)
     }
 
     /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean

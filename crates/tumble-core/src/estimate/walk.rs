@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::closures::Closures;
 use super::drift::Drift;
-use super::facets::{Facets, SQUARE};
+use super::facets::Facets;
 use super::filter::{Filter, Innovation};
 use super::group::Group;
 use super::model::{self, Nominal, Observation};
@@ -299,7 +299,8 @@ impl<const S: usize> Walk<S> {
         let Some(visit) = self.visit.filter(|_| self.unplated >= PLATED && group.records == GROUP) else { return };
         self.unplated = 0;
         let (normal, since) = group.mean_face();
-        let known = self.plated && !self.coarse && self.table_known && noise.facet_sigma_rad == Some(SQUARE);
+        let square = noise.facet_sigma_rad.is_some() && !noise.crooked;
+        let known = self.plated && !self.coarse && self.table_known && square;
         if !known || !self.facets.admits(&normal) {
             return;
         }

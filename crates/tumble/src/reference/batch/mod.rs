@@ -65,7 +65,8 @@ impl Setting<'_> {
         let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.segment.face());
         let seen = faces.fold(FaceSet::EMPTY, FaceSet::with);
         let leaning = rest.leaning(self.stretches[rest.stretch].segment.face());
-        self.noise.facet_sigma_rad == Some(SQUARE) && seen.len() >= 3 && leaning < LEANING
+        let square = self.noise.facet_sigma_rad.is_some() && !self.noise.crooked;
+        square && seen.len() >= 3 && leaning < LEANING
     }
 }
 
