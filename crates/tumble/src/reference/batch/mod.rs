@@ -15,7 +15,7 @@ mod walked;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Frame};
-use tumble_core::estimate::facets::{LEANING, SQUARE};
+use tumble_core::estimate::facets::LEANING;
 use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, PARAMETERS, noise};
 use tumble_core::face::FaceSet;
