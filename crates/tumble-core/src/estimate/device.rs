@@ -373,7 +373,7 @@ fn damp(sigma: &mut f32, found: f32, last: &mut f32) {
 fn disturbance(nis: f32) -> f32 {
     let a = 0.5 * nis;
     // Not a number for a move without rests on both sides. Below a tenth of a sigma both integrals are constants.
-    if !(a > 0.1) {
+    if a.is_nan() || a <= 0.1 {
         return 1.0;
     }
     let like = libm::expf(-a);
