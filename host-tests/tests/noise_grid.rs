@@ -7,6 +7,7 @@ use tumble_core::calibration::Verdict;
 use tumble_core::estimate::{PARAMETERS, judge};
 use tumble_core::procedure::{BoxFaces, TurnStops};
 use tumble_sim::scheme::Imperfection;
+use tumble_sim::sensor::Quantisation;
 use tumble_sim::{Scheme, SchemeConfig};
 
 /// Of the sheet's noise.
@@ -87,4 +88,27 @@ fn both_directions_without_a_box() {
 fn generic_poses() {
     let scheme = Scheme::MultiPose { poses: 17 };
     over_the_grid("poses", scheme, TurnStops::ByHand, BoxFaces::Unknown, None);
+}
+
+/// Noise over step of 0.06 and 0.25 (1/20 and 1/5 of the sheet's noise at ±2000 °/s): the mean of a rest is off by a good part of a step,
+/// and the bias's sigma says so. It was 16 and 20 times too small.
+#[test]
+fn a_sensor_coarser_than_its_noise_knows_its_bias_no_better_than_that() {
+    for noise in [0.05, 0.2] {
+        let (mut sum, mut dof) = (0.0, 0.0);
+        for seed in SEEDS {
+            let mut config = SchemeConfig::new(Scheme::Single, seed);
+            config.world.sensor.noise.gyro_dps_rthz *= noise;
+            config.world.sensor.noise.accel_ug_rthz *= noise;
+            config.world.sensor.quantisation = Some(Quantisation { gyro_range_dps: 2000.0, accel_range_g: 16.0 });
+            let session = session(&config, TurnStops::Fenced, BoxFaces::Square);
+            for deviation in session.deviations().iter().filter(|deviation| deviation.name.starts_with("gyro_bias")) {
+                sum += (deviation.error / deviation.sigma).powi(2);
+                dof += 1.0;
+            }
+        }
+        let (mean, most) = (sum / dof, chi_square_over_dof(dof, QUANTILE));
+        println!("bias of a coarse sensor, noise x {noise}: {mean:.2} of {dof} numbers");
+        assert!(mean > 0.1 && mean < most, "noise x {noise}: {mean:.2}, at most {most:.2}");
+    }
 }

@@ -1,6 +1,7 @@
 //! From samples to what the person did: still, turn or move.
 
 pub mod block;
+pub mod grain;
 pub mod path;
 pub mod segmenter;
 pub mod stillness;

@@ -8,6 +8,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 use crate::face::Face;
+use crate::motion::grain::Grain;
 
 /// One unit of rotation, rad: ±32767 units reach ±1 rad, which a record of one 62.5 Hz sample fills at 3600 °/s.
 pub const ANGLE_UNIT_RAD: f32 = 1.0 / 32768.0;
@@ -129,6 +130,8 @@ pub struct Tape<const R: usize, const S: usize> {
     time_left_us: f32,
     temperature_sum_degc: f32,
     temperature_count: u32,
+    /// How coarse the readings are that the records are sums of.
+    pub grain: Grain,
 }
 
 impl<const R: usize, const S: usize> Default for Tape<R, S> {
@@ -148,6 +151,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
             time_left_us: 0.0,
             temperature_sum_degc: 0.0,
             temperature_count: 0,
+            grain: Grain::new(),
         }
     }
 
@@ -160,6 +164,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
         self.time_left_us = 0.0;
         self.temperature_sum_degc = 0.0;
         self.temperature_count = 0;
+        self.grain = Grain::new();
     }
 
     /// Number of records.

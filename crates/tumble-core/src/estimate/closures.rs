@@ -1,10 +1,14 @@
 //! What the closures of turns say of the stops: the marginal likelihood of a stop's variance, scales being free.
 //!
-//! On a visit of m turns, closure i leaves `y = x k + h − sᵢ + nᵢ`: x the angle turned, k the error of the axis's scale, h the
-//! first stop's error and sᵢ its own, both of the unknown variance v, nᵢ the gyroscope's noise of variance a. Their covariance
-//! `(a + v) I + v 1 1ᵀ` has a closed inverse and determinant, so that for every v of a grid a visit adds to the
-//! information on k, and what gravity says of k (the filter's posterior less the closures' share of it) is added at the end. A
-//! stop between two turns is thus counted once, and scales that follow the stops' errors take up degrees of freedom.
+//! From one stop to the next a turn leaves `d = x k + s' − s + n`: x the angle turned, k the error of the axis's scale, s' the stop
+//! before and s this one, both of the unknown variance v, n the gyroscope's noise of variance a. A visit's closures share stops: for
+//! every v of a grid a scalar Kalman filter carries what is known of the last stop, `s' = m + c k` with variance p, at first (0, 0, v):
+//!
+//! `S = p + v + a`, `r = d − m`, `h = x + c`;  `m ← −r v/S`, `c ← h v/S`, `p ← v − v²/S`
+//!
+//! so that a closure adds `h²/S` to the information on k and `ln S + r²/S` to the cost. What gravity says of k (the filter's
+//! posterior less the closures' share of it) is added at the end. A stop between two turns is thus counted once, and scales that follow
+//! the stops' errors take up degrees of freedom.
 
 use super::normal::mean_variance;
 use crate::DEGREE_RAD;
@@ -17,33 +21,21 @@ const GRID: usize = 26;
 const FENCED: core::ops::Range<usize> = 0..20;
 const BY_HAND: core::ops::Range<usize> = 16..GRID;
 
-/// Sums over the visit in progress.
-#[derive(Clone, Copy, Debug, Default)]
-struct Visit {
-    axis: usize,
-    count: f32,
-    noise: f32,
-    x: f32,
-    y: f32,
-    xx: f32,
-    xy: f32,
-    yy: f32,
-}
-
 /// Of one variance.
 #[derive(Clone, Copy, Debug, Default)]
 struct Hypothesis {
-    /// `xᵀ Σ⁻¹ x` and `xᵀ Σ⁻¹ y` of each axis.
+    /// `Σ h²/S` and `Σ h r/S` of each axis.
     information: [f32; 3],
     product: [f32; 3],
-    /// `yᵀ Σ⁻¹ y + ln det Σ`.
+    /// `Σ ln S + r²/S`.
     cost: f32,
+    /// The last stop: m, c and p. None at the beginning of a visit.
+    stop: Option<[f32; 3]>,
 }
 
 /// Sums over a pass.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Closures {
-    visit: Visit,
     grid: [Hypothesis; GRID],
     /// Of the variance in force.
     current: Hypothesis,
@@ -51,30 +43,20 @@ pub struct Closures {
 }
 
 impl Closures {
-    /// A closure about `axis` after turning by `turned_rad` left `residual` rad; `noise` is the gyroscope's own variance in it.
-    pub fn take(&mut self, axis: usize, turned_rad: f32, residual: f32, noise: f32) {
-        let visit = &mut self.visit;
-        visit.axis = axis;
-        visit.count += 1.0;
-        visit.noise += noise;
-        visit.x += turned_rad;
-        visit.y += residual;
-        visit.xx += turned_rad * turned_rad;
-        visit.xy += turned_rad * residual;
-        visit.yy += residual * residual;
+    /// Turning by `turned_rad` about `axis` left `residual` rad between the stop before and this one; `noise` is the gyroscope's own
+    /// variance in it, `variance` that of a stop in force.
+    pub fn take(&mut self, axis: usize, turned_rad: f32, residual: f32, noise: f32, variance: f32) {
+        self.any = true;
+        self.current.take(axis, turned_rad, residual, noise, variance);
+        for (hypothesis, variance) in self.grid.iter_mut().zip(variances()) {
+            hypothesis.take(axis, turned_rad, residual, noise, variance);
+        }
     }
 
-    /// The box leaves the face, or its first stop is another from now on; `variance` is the one in force.
-    pub fn end_visit(&mut self, variance: f32) {
-        let visit = core::mem::take(&mut self.visit);
-        if visit.count == 0.0 {
-            return;
-        }
-        self.any = true;
-        self.current.take(&visit, variance);
-        for (hypothesis, variance) in self.grid.iter_mut().zip(variances()) {
-            hypothesis.take(&visit, variance);
-        }
+    /// The box leaves the face, or its first stop is another from now on.
+    pub fn end_visit(&mut self) {
+        self.current.stop = None;
+        self.grid.iter_mut().for_each(|hypothesis| hypothesis.stop = None);
     }
 
     /// Mean of the posterior, rad², under a prior uniform over the logarithm; none without closures. `scales`: of each axis the
@@ -92,22 +74,25 @@ impl Closures {
             }
         });
         let first = range.start;
+        // A fence that is exact is as likely as one that is not; a hand is never.
+        let least = if stops == TurnStops::Fenced { (range.len() - 1) as f32 } else { 1.0 };
         self.any.then(|| {
             let grid = variances().skip(first).take(range.len());
-            mean_variance(grid, |index, _| self.grid[first + index].log_likelihood(&gravity))
+            mean_variance(grid, least, |index, _| self.grid[first + index].log_likelihood(&gravity))
         })
     }
 }
 
 impl Hypothesis {
-    fn take(&mut self, visit: &Visit, variance: f32) {
-        let own = visit.noise / visit.count + variance;
-        let weight = 1.0 / own;
-        let shared = variance / (own + visit.count * variance);
-        self.information[visit.axis] += weight * (visit.xx - shared * visit.x * visit.x);
-        self.product[visit.axis] += weight * (visit.xy - shared * visit.x * visit.y);
-        let determinant = visit.count * libm::logf(own) + libm::logf(1.0 + visit.count * variance * weight);
-        self.cost += weight * (visit.yy - shared * visit.y * visit.y) + determinant;
+    fn take(&mut self, axis: usize, turned_rad: f32, residual: f32, noise: f32, variance: f32) {
+        let [mean, follows, own] = self.stop.unwrap_or([0.0, 0.0, variance]);
+        let weight = 1.0 / (own + variance + noise);
+        let (left, coefficient) = (residual - mean, turned_rad + follows);
+        self.information[axis] += weight * coefficient * coefficient;
+        self.product[axis] += weight * coefficient * left;
+        self.cost += weight * left * left - libm::logf(weight);
+        let share = variance * weight;
+        self.stop = Some([-share * left, share * coefficient, variance * (1.0 - share)]);
     }
 
     fn log_likelihood(&self, gravity: &[(f32, f32); 3]) -> f32 {
@@ -136,30 +121,47 @@ fn variances() -> impl Iterator<Item = f32> {
 mod tests {
     use super::*;
 
-    /// Two turns each way on six faces: the stops' own differences, scales removed by hand, tell the same.
-    #[test]
-    fn a_known_spread_is_found() {
-        let sigma = 0.05 * DEGREE_RAD;
-        // Fixed draws of unit variance, three to a visit: first stop and two closures.
-        let draws = [
-            [0.3f32, -1.2, 0.8],
-            [1.5, 0.2, -0.6],
-            [-0.9, 0.7, 1.1],
-            [0.1, -1.6, 0.5],
-            [-1.3, 1.0, -0.2],
-            [1.2, 0.4, -1.1],
-        ];
+    /// Fixed draws of unit variance, three to a visit: first stop and two closures.
+    const DRAWS: [[f32; 3]; 6] =
+        [[0.3, -1.2, 0.8], [1.5, 0.2, -0.6], [-0.9, 0.7, 1.1], [0.1, -1.6, 0.5], [-1.3, 1.0, -0.2], [1.2, 0.4, -1.1]];
+
+    /// There and back on six faces by stops of `sigma`, of a scale that is off by `scale`.
+    fn there_and_back(sigma: f32, scale: f32) -> Closures {
         let mut closures = Closures::default();
-        for (visit, draw) in draws.iter().enumerate() {
+        for (visit, draw) in DRAWS.iter().enumerate() {
             for (turn, x) in [(1, core::f32::consts::TAU), (2, -core::f32::consts::TAU)] {
-                let scale = 1e-4 * x;
-                closures.take(visit / 2, x, scale + sigma * (draw[0] - draw[turn]), 1e-9);
+                let left = scale * x + sigma * (draw[turn - 1] - draw[turn]);
+                closures.take(visit / 2, x, left, 1e-9, sigma * sigma);
             }
-            closures.end_visit(sigma * sigma);
+            closures.end_visit();
         }
-        let found = closures.variance(TurnStops::Fenced, &[(0.0, 1e3); 3]).expect("closures");
-        let found = libm::sqrtf(found) / sigma;
-        assert!((0.8..1.7).contains(&found), "{found}");
+        closures
+    }
+
+    #[test]
+    fn a_known_spread_is_found_whatever_the_scale() {
+        let sigma = 0.05 * DEGREE_RAD;
+        for scale in [0.0, 1e-4, 3e-3] {
+            let closures = there_and_back(sigma, scale);
+            let found = closures.variance(TurnStops::Fenced, &[(0.0, 1e3); 3]).expect("closures");
+            let found = libm::sqrtf(found) / sigma;
+            assert!((0.8..1.7).contains(&found), "scale off by {scale}: {found}");
+        }
         assert_eq!(Closures::default().variance(TurnStops::Fenced, &[(0.0, 1.0); 3]), None);
+    }
+
+    /// Two closures with a stop in common: the covariance of both at once, `[[2v + a, −v], [−v, 2v + a]]`, says the same.
+    #[test]
+    fn a_visit_is_its_joint_likelihood() {
+        let (v, a, x, [first, second]) = (3e-6f32, 1e-6f32, [6.3f32, -6.1], [2e-3f32, -1.5e-3]);
+        let mut hypothesis = Hypothesis::default();
+        hypothesis.take(0, x[0], first, a, v);
+        hypothesis.take(0, x[1], second, a, v);
+        let inverse = nalgebra::Matrix2::new(2.0 * v + a, -v, -v, 2.0 * v + a).try_inverse().expect("regular");
+        let (x, d) = (nalgebra::Vector2::from(x), nalgebra::Vector2::new(first, second));
+        let cost = d.dot(&(inverse * d)) - libm::logf(inverse.determinant());
+        assert!((hypothesis.information[0] / x.dot(&(inverse * x)) - 1.0).abs() < 1e-4);
+        assert!((hypothesis.product[0] / x.dot(&(inverse * d)) - 1.0).abs() < 1e-4);
+        assert!((hypothesis.cost - cost).abs() < 1e-3, "{} {cost}", hypothesis.cost);
     }
 }

@@ -6,12 +6,13 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
+use super::facets::SQUARE;
 use super::model::Nominal;
 use super::noise::Noise;
 use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
-use super::sums::{Excess, SegmentNoise};
+use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::EARTH_SIGMA;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
@@ -36,13 +37,12 @@ const LAST_ADAPTING: u32 = 14;
 const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
-/// Sigmas from which a walk is believed in. The sum of a session's 17 squared innovations is χ²₁₇ without one, and exceeds its
-/// mean by four of its sigma (40.3) once in 800 sessions.
-const WALK_CERTAIN: f32 = 4.0;
+/// Upper point of the normal distribution from which a walk is believed in: without one, once in a thousand sessions.
+const WALK_CERTAIN: f32 = 3.09;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
-/// Degrees of freedom of the Student's t distribution that moves are taken to follow: heavy tails, gentle weights.
-const STUDENT: f32 = 4.0;
+/// Share of moves that are taken to be disturbed, over the logarithm of the most by which their variance may be larger (1e4).
+const DISTURBED: f32 = 0.05 / 9.21;
 
 /// What the session was told.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,8 +98,14 @@ pub struct Estimator<const S: usize> {
     start: Nominal,
     walk: Walk<S>,
     passes: u32,
-    /// By what factors the last pass changed the wobble's sigmas.
-    wobble_steps: [f32; 2],
+    /// By what factors the last pass changed the sigmas of wobble and stops.
+    steps: [f32; 3],
+    /// … and of a face.
+    facet_step: f32,
+    /// Was the last pass certain that the gyroscope's bias walks, and the accelerometer's? Neither is believed before two passes in a row
+    /// say so: to believe in a walk that is not there costs the accelerometer a factor of four, and the first pass that judges stands
+    /// on noise that has not settled.
+    walks: [bool; 2],
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
     /// It has certainly drifted.
@@ -128,7 +134,9 @@ impl<const S: usize> Estimator<S> {
             start,
             walk,
             passes: 0,
-            wobble_steps: [1.0; 2],
+            steps: [1.0; 3],
+            facet_step: 1.0,
+            walks: [false; 2],
             bias_wanders: false,
             slope_certain: false,
         }
@@ -191,19 +199,21 @@ impl<const S: usize> Estimator<S> {
             return;
         }
         let sums = self.walk.sums;
-        let probable = sums.rate_walk.value().is_some_and(|(value, sigma)| value > SIGNIFICANT * sigma);
+        let probable = sums.rate_walk.exceeds(SIGNIFICANT);
         self.bias_wanders = probable || self.noise.has_bias_walk();
-        if let Some(excess) = walk_excess(&sums.rate_walk, self.noise.has_bias_walk()) {
+        let certain = [&sums.rate_walk, &sums.force_walk].map(|walk| walk.exceeds(WALK_CERTAIN));
+        let [rate, force] = core::array::from_fn(|walk| certain[walk] && self.walks[walk]);
+        self.walks = certain;
+        if let Some((excess, _)) = sums.rate_walk.value().filter(|_| rate || self.noise.has_bias_walk()) {
             self.noise.set_bias_walk(self.noise.bias_walk + excess);
         }
-        if let Some(excess) = walk_excess(&sums.force_walk, self.noise.has_force_walk()) {
+        if let Some((excess, _)) = sums.force_walk.value().filter(|_| force || self.noise.has_force_walk()) {
             self.noise.set_force_walk(self.noise.force_walk + excess);
         }
         if let Some((excess, _)) = sums.pivot.value() {
             self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
         }
-        self.settle_stops();
-        self.settle_wobble();
+        self.settle();
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }
@@ -217,35 +227,35 @@ impl<const S: usize> Estimator<S> {
             self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
         }
         // The start is 20 mrad off, which is no box's fault; the first pass leaves its square, 0.4 mrad.
-        if self.passes > 1 {
-            self.noise.set_facet_variance(self.walk.facets.variance());
+        if self.passes > 1
+            && let Some(sigma) = &mut self.noise.facet_sigma_rad
+        {
+            let (found, crooked) = self.walk.facets.variance().unwrap_or((SQUARE * SQUARE, false));
+            damp(sigma, libm::sqrtf(found), &mut self.facet_step);
+            self.noise.crooked = crooked;
         }
     }
 
-    /// Both parts of a wobble. A plate believed less shows smaller residuals, and then is believed more: where a step would take
-    /// the last one back, half of it is made (in the logarithm), which ends the swing.
-    fn settle_wobble(&mut self) {
-        let found = [self.walk.wobble.turning(), self.walk.wobble.rest()];
-        let sigmas = [&mut self.noise.wobble_sigma_rad, &mut self.noise.rocking_sigma_rad];
-        for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.wobble_steps) {
-            let Some(found) = found else { continue };
-            let step = libm::sqrtf(found) / *sigma;
-            let back = (step - 1.0) * (*last - 1.0) < 0.0;
-            *last = if back { libm::sqrtf(step) } else { step };
-            *sigma *= *last;
+    /// Both parts of a wobble, and stops. A plate or a fence believed less shows smaller residuals, and then is believed more: where
+    /// a step would take the last one back, half of it is made (in the logarithm), which ends the swing.
+    fn settle(&mut self) {
+        let found = [self.walk.wobble.turning(), self.walk.wobble.rest(), self.stops()];
+        let noise = &mut self.noise;
+        let sigmas = [&mut noise.wobble_sigma_rad, &mut noise.rocking_sigma_rad, &mut noise.stop_sigma_rad];
+        for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.steps) {
+            if let Some(found) = found {
+                damp(sigma, libm::sqrtf(found), last);
+            }
         }
     }
 
-    fn settle_stops(&mut self) {
-        let walk = &mut self.walk;
-        walk.closures.end_visit(self.noise.stop_sigma_rad * self.noise.stop_sigma_rad);
+    fn stops(&self) -> Option<f32> {
+        let filter = &self.walk.filter;
         let scales = core::array::from_fn(|axis| {
             let index = Block::GyroCorrection.start() + 4 * axis;
-            (walk.filter.state()[index], walk.filter.covariance()[(index, index)])
+            (filter.state()[index], filter.covariance()[(index, index)])
         });
-        if let Some(variance) = walk.closures.variance(self.conditions.stops, &scales) {
-            self.noise.stop_sigma_rad = libm::sqrtf(variance);
-        }
+        self.walk.closures.variance(self.conditions.stops, &scales)
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
@@ -267,9 +277,7 @@ impl<const S: usize> Estimator<S> {
         self.noise.motion_scale *= excess;
         let mut steady = true;
         for noise in &mut self.walk.noise {
-            let nis = noise.hinge_nis / excess;
-            // Not a number for a move without rests on both sides, which `max` turns into 1.
-            let scale = ((STUDENT + nis) / (STUDENT + 2.0)).max(1.0);
+            let scale = disturbance(noise.hinge_nis / excess);
             steady &= libm::fabsf(scale - noise.rate_scale) < NOISE_SETTLED * scale;
             noise.rate_scale = scale;
         }
@@ -350,9 +358,26 @@ impl<const S: usize> Estimator<S> {
     }
 }
 
-/// How much more a bias wanders, or a face is off, than it is taken to. Neither is believed before it is certain: to believe
-/// in a walk that is not there costs the accelerometer a factor of four.
-fn walk_excess(excess: &Excess, believed: bool) -> Option<f32> {
-    let (value, sigma) = excess.value()?;
-    (believed || value > WALK_CERTAIN * sigma).then_some(value)
+/// Brings a sigma to what was found; `last` is the last pass's factor.
+fn damp(sigma: &mut f32, found: f32, last: &mut f32) {
+    let step = found / *sigma;
+    let back = (step - 1.0) * (*last - 1.0) < 0.0;
+    *last = if back { libm::sqrtf(step) } else { step };
+    *sigma *= *last;
+}
+
+/// By how much more variance than other moves' one is to be taken, whose level error is `nis` (χ²₂ if it is like the others). One in
+/// twenty is taken to be disturbed, its variance s times as large, ln s uniform up to ln 1e4. With `a = χ²/2` the likelihoods are
+/// `e^−a` and, over u = 1/s, `∫ e^−au du = (1 − e^−a)/a`; the mean of u, by which the move's information is to be multiplied, has
+/// `∫ u e^−au du = (1 − (1 + a) e^−a)/a²`. What lies within χ²₂ is left alone, what lies far out gets a variance of χ²/2.
+fn disturbance(nis: f32) -> f32 {
+    let a = 0.5 * nis;
+    // Not a number for a move without rests on both sides. Below a tenth of a sigma both integrals are constants.
+    if a.is_nan() || a <= 0.1 {
+        return 1.0;
+    }
+    let like = libm::expf(-a);
+    let usual = (1.0 - 0.05) * like;
+    let disturbed = DISTURBED * (1.0 - like) / a;
+    (usual + disturbed) / (usual + DISTURBED * (1.0 - (1.0 + a) * like) / (a * a))
 }

@@ -12,7 +12,7 @@ use super::normal::{Normal, mean_variance};
 pub const SQUARE: f32 = 5e-6;
 /// The grid's sigmas grow by √2 from there, to 41 mrad (2.4°).
 const GRID: usize = 25;
-/// Twice the logarithm of the likelihood's ratio from which a box is not believed to be square: ½χ²₁ exceeds it once in a thousand
+/// Twice the logarithm of the likelihood's ratio from which a box is said not to be square: ½χ²₁ exceeds it once in a thousand
 /// sessions.
 const CERTAIN: f32 = 9.55;
 
@@ -55,8 +55,10 @@ impl Facets {
         self.count >= 6.0
     }
 
-    /// Mean of the posterior of a face's variance, rad², if it is certain that faces err at all.
-    pub fn variance(&self) -> Option<f32> {
+    /// Mean of the posterior of a face's variance, rad², a square box being as likely as a crooked one before, and whether it is certain
+    /// that faces err at all. Faces that err by less than the rests' levels are known (0.02° is 200 µrad, a rest of 2.5 s knows 130) are not
+    /// told from square ones for certain; their variance is believed by the odds.
+    pub fn variance(&self) -> Option<(f32, bool)> {
         let mut normal = self.normal;
         let freedom = self.count - normal.eliminate(5) as f32;
         if freedom < 1.0 {
@@ -67,6 +69,6 @@ impl Facets {
         let likeliest = (squares / freedom - noise).max(0.0);
         let certain = 2.0 * (log(likeliest) - log(0.0)) > CERTAIN;
         let grid = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
-        certain.then(|| mean_variance(grid, |_, variance| log(variance)))
+        Some((mean_variance(grid, (GRID - 1) as f32, |_, variance| log(variance)), certain))
     }
 }

@@ -24,8 +24,8 @@ const CORRECTION_SIGMA_LIMIT: f32 = 3e-3;
 const ACCEL_BIAS_SIGMA_LIMIT: f32 = 0.05;
 /// Motion whose residuals are this many times their expected square is worth a warning: five sigma where one is expected.
 const MOTION_LIMIT: f32 = 25.0;
-/// A move down-weighted by more than this is reported as left out.
-const OUTLIER_LIMIT: f32 = 100.0;
+/// A move down-weighted by more than this is reported as left out: its level error is 24 sigma, χ²₂ = 600.
+const OUTLIER_LIMIT: f32 = 300.0;
 /// A bias that moves by more than this within a session is worth a warning, rad/s.
 const DRIFT_LIMIT: f32 = 0.1 * DEGREE_RAD;
 

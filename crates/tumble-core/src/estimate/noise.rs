@@ -62,21 +62,31 @@ pub struct Noise {
     pub pivot_sigma_m: f32,
     /// One face of the box, rad; none where it is not known to be square.
     pub facet_sigma_rad: Option<f32>,
+    /// Are faces certain not to be square?
+    pub crooked: bool,
     /// How far the face that a turn is made on leaves the table during the turn, rad: what turns with the box …
     pub wobble_sigma_rad: f32,
     /// … and the rest.
     pub rocking_sigma_rad: f32,
-    /// Rates' sample variance of the quietest rest, (rad/s)².
+    /// Rates' sample variance of the quietest rest, or half of what rounding alone can make of it, (rad/s)².
     pub quiet_variance: f32,
+    /// Variance of what the rounding of the sensor's numbers leaves in a mean rate, (rad/s)² (`motion/grain.rs`).
+    pub rate_rounding: f32,
+    /// Length of all rests on something solid, s: they show the same reading, which errs the same way in all of them.
+    pub solid_s: f32,
+    /// As `rate_rounding`, of a mean specific force, times how many rests and turns a visit has, (m/s²)²: these show the same
+    /// reading, and every face another.
+    pub force_rounding: f32,
 }
 
 impl Noise {
     /// From the rests' scatter.
     pub fn from_rests<const R: usize, const S: usize>(tape: &Tape<R, S>, stops: TurnStops, faces: BoxFaces) -> Self {
         let mut quiet_variance = f32::INFINITY;
+        let toggling = tape.grain.toggling();
         for segment in tape.segments().iter().filter(|segment| segment.is_usable_still()) {
             if let Kind::Still { rate_variance, .. } = segment.kind {
-                quiet_variance = quiet_variance.min(rate_variance);
+                quiet_variance = quiet_variance.min(rate_variance.max(toggling));
             }
         }
         let mut rate = Vec::<(f32, f32), S>::new();
@@ -88,7 +98,12 @@ impl Noise {
                 let _ = force.push((scatter.force, scatter.count));
             }
         }
+        let [rate_rounding, force_rounding] = tape.grain.offset_variances();
+        let (solid_s, visit) = lengths(tape, quiet_variance);
         Self {
+            rate_rounding,
+            solid_s,
+            force_rounding: force_rounding * visit,
             rate_density: density(pooled(&mut rate), SHEET_RATE_DENSITY, ANGLE_UNIT_RAD),
             force_density: density(pooled(&mut force), SHEET_FORCE_DENSITY, FORCE_UNIT_MPS2 * REST_RECORD_S),
             bias_walk: WALK_FLOOR,
@@ -98,6 +113,7 @@ impl Noise {
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
+            crooked: false,
             facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
             wobble_sigma_rad: UNSEEN,
             rocking_sigma_rad: UNSEEN,
@@ -156,16 +172,9 @@ impl Noise {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
-    /// The box is not as square as its owner said, or it is.
-    pub fn set_facet_variance(&mut self, found: Option<f32>) {
-        if let Some(sigma) = &mut self.facet_sigma_rad {
-            *sigma = found.map_or(SQUARE, libm::sqrtf);
-        }
-    }
-
-    /// How crooked the box was found to be, rad, if it was called square and is not.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        self.facet_sigma_rad.filter(|sigma| *sigma > SQUARE)
+        self.facet_sigma_rad.filter(|_| self.crooked)
     }
 
     /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean
@@ -188,6 +197,21 @@ fn density(found: Option<f32>, sheet: f32, unit: f32) -> f32 {
     let sum = ROUNDED / SHORTEST_S * unit * unit;
     let sheet = sheet * sheet;
     found.map_or(sheet, |found| (found - scatter).max(0.0) + sum).min(1e4 * sheet)
+}
+
+/// Length of all rests on something solid, s, and how many rests and turns a visit to a face has in the mean.
+fn lengths<const R: usize, const S: usize>(tape: &Tape<R, S>, quiet_variance: f32) -> (f32, f32) {
+    let (mut solid_s, mut parts, mut visits, mut stays) = (0.0, 0.0f32, 0.0f32, false);
+    for segment in tape.segments() {
+        let hand = matches!(segment.kind, Kind::Hand);
+        if !hand {
+            solid_s += if is_solid(segment, quiet_variance) { segment.duration_s() } else { 0.0 };
+            parts += 1.0;
+            visits += if stays { 0.0 } else { 1.0 };
+        }
+        stays = !hand;
+    }
+    (solid_s, parts / visits.max(1.0))
 }
 
 /// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which

@@ -53,9 +53,10 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// A posterior over a logarithmic grid of variances, each step a factor of two, under a prior that is uniform over it.
+/// A posterior over a logarithmic grid of variances, each step a factor of two, under a prior that is uniform over it but for the least
+/// value, which counts `least` times: as many as all the others together where there may as well be nothing at all (Jeffreys 1961).
 /// Its mean, and not its peak, is what variances of other things are made of: these are linear in it.
-pub fn mean_variance(grid: impl Iterator<Item = f32>, log_likelihood: impl Fn(usize, f32) -> f32) -> f32 {
+pub fn mean_variance(grid: impl Iterator<Item = f32>, least: f32, log_likelihood: impl Fn(usize, f32) -> f32) -> f32 {
     let (mut best, mut weights, mut sum) = (f32::NEG_INFINITY, 0.0f32, 0.0f32);
     for (index, variance) in grid.enumerate() {
         let log = log_likelihood(index, variance);
@@ -65,7 +66,7 @@ pub fn mean_variance(grid: impl Iterator<Item = f32>, log_likelihood: impl Fn(us
             sum *= scale;
             best = log;
         }
-        let weight = libm::expf(log - best);
+        let weight = libm::expf(log - best) * if index == 0 { least } else { 1.0 };
         weights += weight;
         sum += weight * variance;
     }
@@ -94,7 +95,7 @@ mod tests {
     fn the_mean_is_the_posteriors() {
         let (n, v) = (10.0, 1e-6f32);
         let grid = (0..24).map(|k| 1e-9 * libm::exp2f(k as f32));
-        let mean = mean_variance(grid, |_, x| -0.5 * n * (libm::logf(x) + v / x));
+        let mean = mean_variance(grid, 1.0, |_, x| -0.5 * n * (libm::logf(x) + v / x));
         assert!((mean / (v * n / (n - 2.0)) - 1.0).abs() < 0.02, "{mean}");
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 use super::closures::Closures;
 use super::drift::Drift;
-use super::facets::{Facets, SQUARE};
+use super::facets::Facets;
 use super::filter::{Filter, Innovation};
 use super::group::Group;
 use super::model::{self, Nominal, Observation};
@@ -69,6 +69,8 @@ pub struct Walk<const S: usize> {
     group: Group,
     /// How much noisier its readings are than they are taken to be.
     turn_noise: Excess,
+    /// What the last pass's turns had in common of that: see [`Pool::prior`](super::sums::Pool::prior).
+    turn_prior: Option<(f32, f32)>,
     /// Groups of this turn since the plate was last looked at.
     unplated: u16,
     last_rest_us: u64,
@@ -95,6 +97,8 @@ struct Visit {
     /// Rotation since the last stop that counted, rad, and the gyroscope's variance in it, rad².
     turned_rad: f32,
     noise: f32,
+    /// What the last closure left, rad.
+    residual: f32,
 }
 
 impl<const S: usize> Walk<S> {
@@ -125,6 +129,7 @@ impl<const S: usize> Walk<S> {
             visit: None,
             group: Group::default(),
             turn_noise: Excess::default(),
+            turn_prior: None,
             unplated: 0,
             last_rest_us: 0,
             hinge: None,
@@ -143,6 +148,7 @@ impl<const S: usize> Walk<S> {
     pub fn restart(&mut self, nominal: Nominal, prior: &Filter) {
         self.filter.clone_from(prior);
         self.width = widest(prior, self.gravity);
+        self.turn_prior = self.sums.turn_noise.prior();
         (self.sums, self.closures, self.facets) = (Sums::default(), Closures::default(), Facets::default());
         (self.drift, self.wobble) = (Drift::default(), Wobble::default());
         (self.plated, self.coarse, self.aligned, self.table_known) = (true, true, false, false);
@@ -205,13 +211,13 @@ impl<const S: usize> Walk<S> {
             (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
             (0..2).for_each(|axis| self.filter.reset(Block::Wobble, axis, 0.0, noise.wobble_sigma_rad));
         } else {
-            self.end_visit(noise);
+            self.end_visit();
         }
         self.move_s = 0.0;
         if matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap) {
             self.aligned = false;
             self.hinge = None;
-            self.end_visit(noise);
+            self.end_visit();
         }
     }
 
@@ -265,14 +271,24 @@ impl<const S: usize> Walk<S> {
         if group.records == 0 {
             return;
         }
+        let density = self.rate_density(segment, noise);
+        group.propagate(&mut self.filter, density);
         let own = &self.noise[self.segment];
-        group.propagate(&mut self.filter, noise.rate_density * noise.motion_scale * own.rate_scale);
         if matches!(segment.kind, Kind::OnTable { .. }) && segment.exclusion == Exclusion::None {
             let variance = noise.force_density / group.seconds * own.force_scale;
-            let innovations = group.observe(&mut self.filter, self.gravity, variance);
+            let rounding = noise.force_rounding * segment.duration_s() / group.seconds;
+            let innovations = group.observe(&mut self.filter, self.gravity, variance + rounding);
             innovations.iter().for_each(|innovation| self.turn_noise.take(innovation, variance));
             self.plate_in_turn(segment, &group, noise);
         }
+    }
+
+    /// Variance of a rotation per second of this move. A steady turn holds its rates as a rest does, and what rounding leaves in
+    /// them is coherent: as white noise it has its variance times the turn's length. A hand's move sweeps over many steps.
+    fn rate_density(&self, segment: &Segment, noise: &Noise) -> f32 {
+        let own = noise.rate_density * noise.motion_scale * self.noise[self.segment].rate_scale;
+        let steady = matches!(segment.kind, Kind::OnTable { .. });
+        own + if steady { noise.rate_rounding * segment.duration_s() } else { 0.0 }
     }
 
     /// The face that a turn is made on stays in the table's plane but for a wobble. What of that does not turn with the box is
@@ -283,14 +299,15 @@ impl<const S: usize> Walk<S> {
         let Some(visit) = self.visit.filter(|_| self.unplated >= PLATED && group.records == GROUP) else { return };
         self.unplated = 0;
         let (normal, since) = group.mean_face();
-        let known = self.plated && !self.coarse && self.table_known && noise.facet_sigma_rad == Some(SQUARE);
+        let square = noise.facet_sigma_rad.is_some() && !noise.crooked;
+        let known = self.plated && !self.coarse && self.table_known && square;
         if !known || !self.facets.admits(&normal) {
             return;
         }
         let readings = f32::from(segment.end - segment.first) / f32::from(GROUP * PLATED);
         let [wobble, rocking] = [noise.wobble_sigma_rad, noise.rocking_sigma_rad].map(|sigma| sigma * sigma);
         let rocking = (rocking + UNSTEADY * wobble) * readings.max(1.0);
-        let loose = self.loose(noise);
+        let loose = self.loose(segment, noise);
         let plane = visit.face.plane().map(|axis| self.attitude * axis);
         for Observation { residual, row } in model::plate_in_turn(&normal, &plane, &since) {
             let innovation = self.filter.observe(&row, residual, WHITE * WHITE + rocking);
@@ -300,14 +317,14 @@ impl<const S: usize> Walk<S> {
 
     /// What gyroscope and gravity alone leave unknown of the attitude in a turn, rad²: `√(q r)`. That the wobble is given more variance
     /// than it has, and K a prior thirty sigma wide, makes the filter's own variances larger than errors are.
-    fn loose(&self, noise: &Noise) -> f32 {
-        let own = &self.noise[self.segment];
-        let rate = noise.rate_density * noise.motion_scale * own.rate_scale;
-        libm::sqrtf(rate * noise.force_density * own.force_scale) / self.gravity
+    fn loose(&self, segment: &Segment, noise: &Noise) -> f32 {
+        let force = noise.force_density * self.noise[self.segment].force_scale;
+        let force = force + noise.force_rounding * segment.duration_s();
+        libm::sqrtf(self.rate_density(segment, noise) * force) / self.gravity
     }
 
-    fn learn_wobble(&mut self, noise: &Noise) {
-        let loose = self.loose(noise);
+    fn learn_wobble(&mut self, segment: &Segment, noise: &Noise) {
+        let loose = self.loose(segment, noise);
         for index in Block::Wobble.range() {
             let (mean, variance) = (self.filter.state()[index], self.filter.covariance()[(index, index)]);
             self.wobble.take_turn(mean, variance, noise.wobble_sigma_rad * noise.wobble_sigma_rad, loose);
@@ -327,17 +344,27 @@ impl<const S: usize> Walk<S> {
             && segment.exclusion == Exclusion::None
         {
             self.learn_pivot(noise);
-            self.learn_wobble(noise);
-            if let Some((excess, _)) = self.turn_noise.value().filter(|_| self.adapting) {
-                let scale = &mut self.noise[self.segment].force_scale;
-                *scale = (*scale * (1.0 + excess)).clamp(1.0, 1e6);
-            }
+            self.learn_wobble(segment, noise);
+            self.learn_turn_noise();
+            let own = self.rate_density(segment, noise) * self.move_s;
             if let Some(visit) = &mut self.visit {
                 visit.turned_rad += angle_rad;
-                visit.noise +=
-                    noise.rate_density * noise.motion_scale * self.noise[self.segment].rate_scale * self.move_s;
+                visit.noise += own;
             }
         }
+    }
+
+    /// In logarithms, the turn's own factor between what the turns of the last pass had in common and what it shows itself.
+    fn learn_turn_noise(&mut self) {
+        let Some((excess, sigma)) = self.turn_noise.value().filter(|_| self.adapting) else { return };
+        let scale = &mut self.noise[self.segment].force_scale;
+        // A turn of ten seconds knows its factor to a sixth; a tenth is far off, where the logarithm is no longer straight.
+        let own = (1.0 + excess).max(0.1);
+        let (value, variance) = (libm::logf(*scale * own), sigma * sigma / (own * own));
+        self.sums.turn_noise.take(value, variance);
+        let (mean, apart) = self.turn_prior.unwrap_or((value, f32::INFINITY));
+        let share = if apart < f32::INFINITY { apart / (apart + variance) } else { 1.0 };
+        *scale = libm::expf(mean + share * (value - mean) + 0.5 * share * variance).clamp(1.0, 1e6);
     }
 
     /// A pivot's estimate has variance `σ² − P` if pivots have variance σ², P being what is left of it.

@@ -16,6 +16,8 @@ pub const UNSEEN: f32 = DEGREE_RAD;
 /// Least sigma, rad: 0.5 µm on 5 cm. The grid grows by √2 a step from there, to 3.3°.
 const LEAST: f32 = 10e-6;
 const GRID: usize = 26;
+/// A box as often as not turns without any wobble that shows: the least sigma has half of the prior.
+const NOTHING: f32 = (GRID - 1) as f32;
 
 /// Sums over a pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,7 +45,7 @@ impl Likelihood {
 
     /// Mean of the posterior, rad², under a prior uniform over the logarithm; none without data.
     fn mean(&self) -> Option<f32> {
-        self.any.then(|| mean_variance(variances(), |index, _| -0.5 * self.costs[index]))
+        self.any.then(|| mean_variance(variances(), NOTHING, |index, _| -0.5 * self.costs[index]))
     }
 }
 

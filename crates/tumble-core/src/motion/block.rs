@@ -28,6 +28,8 @@ pub struct Block {
     pub rate_variance: f32,
     /// Variance of one sample's specific force, mean of the three axes, (m/s²)².
     pub force_variance: f32,
+    /// The same two axis by axis.
+    pub axis_variances: [Vector3<f32>; 2],
     /// Channels at an end of their range, as in [`crate::tape::Segment::clipped`].
     pub clipped: u8,
     /// Samples with such a channel.
@@ -183,15 +185,17 @@ impl Accumulator {
     fn take_block(&mut self, end_us: u64) -> Block {
         let n = self.samples as f32;
         let (rate, force) = (self.sum_rate / n, self.sum_force / n);
-        let pooled = |squares: &Vector3<f32>, mean: &Vector3<f32>| {
-            ((squares / n - mean.component_mul(mean)).sum() / 3.0 * n / (n - 1.0)).max(0.0)
+        let variances = |squares: &Vector3<f32>, mean: &Vector3<f32>| {
+            ((squares / n - mean.component_mul(mean)) * (n / (n - 1.0))).map(|variance| variance.max(0.0))
         };
+        let axis_variances = [variances(&self.squares_rate, &rate), variances(&self.squares_force, &force)];
         let block = Block {
             samples: self.samples,
             mean_rate: self.origin_rate + rate,
             mean_force: self.origin_force + force,
-            rate_variance: pooled(&self.squares_rate, &rate),
-            force_variance: pooled(&self.squares_force, &force),
+            rate_variance: axis_variances[0].mean(),
+            force_variance: axis_variances[1].mean(),
+            axis_variances,
             clipped: self.clipped,
             clipped_samples: self.clipped_samples,
             end_us,

@@ -116,6 +116,7 @@ impl Segmenter {
             self.start_us = sample.t_us;
             self.block_start_us = sample.t_us;
         }
+        tape.grain.see(sample);
         let completed = self.accumulator.push(sample, clipped);
         if let Some(gap_s) = completed.gap_s {
             self.gap(sample, gap_s, tape, &mut events);
@@ -247,6 +248,7 @@ impl Segmenter {
             let _ = events.push(MotionEvent::StillEnded { face, held_s });
             return Ok(());
         }
+        tape.grain.rest(block);
         let new_first = self.merge_pending(tape, pending_first);
         self.state = State::Still {
             blocks: blocks + 1,
@@ -285,6 +287,7 @@ impl Segmenter {
         self.clipped = 0;
         self.clipped_samples = 0;
         let rate_variance = variance_sum / blocks as f32;
+        tape.grain.end_rest(rate_variance);
         self.close(tape, Kind::Still { face, rate_variance }, pending_first, end_us)?;
         Ok((face, held_s))
     }

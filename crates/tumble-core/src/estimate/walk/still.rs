@@ -32,7 +32,8 @@ impl<const S: usize> Walk<S> {
             self.noise[self.segment].force_scale = own.max(1.0);
         }
         let (scale, duration_s) = (self.noise[self.segment].force_scale, segment.duration_s());
-        let variance = noise.force_density * scale / (duration_s * self.gravity * self.gravity);
+        let own = noise.force_density * scale / duration_s + noise.force_rounding;
+        let variance = own / (self.gravity * self.gravity);
         self.level(&self.nominal.accel.compensate(&force), variance, noise);
         if noise::is_solid(segment, noise.quiet_variance) {
             let rate = crate::motion::segmenter::mean_rate(tape, first, end) - self.nominal.gyro.bias;
@@ -48,14 +49,14 @@ impl<const S: usize> Walk<S> {
             self.plate(face, noise);
             self.stop(face, noise);
         } else {
-            self.end_visit(noise);
+            self.end_visit();
         }
     }
 
     /// Its closures are counted.
-    pub(super) fn end_visit(&mut self, noise: &Noise) {
+    pub(super) fn end_visit(&mut self) {
         self.visit = None;
-        self.closures.end_visit(noise.stop_sigma_rad * noise.stop_sigma_rad);
+        self.closures.end_visit();
     }
 
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
@@ -137,7 +138,8 @@ impl<const S: usize> Walk<S> {
                 let whole = libm::roundf(visit.turned_rad / core::f32::consts::TAU) * core::f32::consts::TAU;
                 let own = core::mem::take(&mut visit.noise);
                 visit.turned_rad = 0.0;
-                self.closures.take(face.axis(), -whole, observation.residual, own);
+                let left = observation.residual - core::mem::replace(&mut visit.residual, observation.residual);
+                self.closures.take(face.axis(), -whole, left, own, variance);
                 self.close(&observation, variance);
             }
             // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
@@ -145,9 +147,9 @@ impl<const S: usize> Walk<S> {
                 return;
             }
         }
-        self.end_visit(noise);
+        self.end_visit();
         self.filter.copy_to(Block::Fence, 0, &model::heading(&normal), 0.0, variance);
-        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0 });
+        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0, residual: 0.0 });
     }
 
     fn close(&mut self, observation: &Observation, variance: f32) {
@@ -164,7 +166,9 @@ impl<const S: usize> Walk<S> {
         }
         let to_n = self.attitude.to_rotation_matrix().into_inner();
         let own = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
-        let variance = own + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
+        // Coherent over the rest: as white noise it has its variance times the number of records.
+        let rounding = noise.force_rounding * segment.duration_s() / record.dt_s;
+        let variance = own + rounding + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         let observation = parts.observation(self.gravity, None);
@@ -184,7 +188,8 @@ impl<const S: usize> Walk<S> {
 
     fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
         let rounded = ANGLE_UNIT_RAD / record.dt_s;
-        let variance = noise.rate_density / record.dt_s + ROUNDED * rounded * rounded;
+        let density = noise.rate_density + noise.rate_rounding * noise.solid_s;
+        let variance = density / record.dt_s + ROUNDED * rounded * rounded;
         let first = self.record == 0;
         let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
         let observation = self.now.rest_rate(record, to_b);

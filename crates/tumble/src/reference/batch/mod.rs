@@ -15,7 +15,7 @@ mod walked;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Frame};
-use tumble_core::estimate::facets::{LEANING, SQUARE};
+use tumble_core::estimate::facets::LEANING;
 use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, PARAMETERS, noise};
 use tumble_core::face::FaceSet;
@@ -65,7 +65,8 @@ impl Setting<'_> {
         let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.segment.face());
         let seen = faces.fold(FaceSet::EMPTY, FaceSet::with);
         let leaning = rest.leaning(self.stretches[rest.stretch].segment.face());
-        self.noise.facet_sigma_rad == Some(SQUARE) && seen.len() >= 3 && leaning < LEANING
+        let square = self.noise.facet_sigma_rad.is_some() && !self.noise.crooked;
+        square && seen.len() >= 3 && leaning < LEANING
     }
 }
 
