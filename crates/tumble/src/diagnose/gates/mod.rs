@@ -125,8 +125,10 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
     let rocking = rocking::examine(&view);
+    let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
+    let line = line::examine(&view, rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
-    gated.take(line::examine(&view));
+    gated.take(line);
     gated.take(aliasing::examine(&view));
     // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
     let rotation = ["gyro_saturation", "gyro_coarse_quantization", "axis_mapping", "wrong_full_scale", "undersampling"];
