@@ -15,6 +15,7 @@ pub mod prepare;
 pub mod promise;
 pub mod report;
 mod run;
+mod second;
 pub mod search;
 pub mod transfer;
 pub mod twin;

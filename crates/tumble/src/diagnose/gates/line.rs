@@ -88,25 +88,25 @@ impl Test {
 }
 
 /// The gate; `rocking_hz` is a table's, which is no hum.
-pub fn examine(view: &View, rocking_hz: Option<f64>) -> Outcome {
+pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) -> Outcome {
     let none = |why: &str| Outcome { limit: untestable(&CARD, "mg", why), ..Outcome::default() };
-    let Some(spectra) = Spectra::new(view) else { return none("no rest on something solid that is long enough") };
-    let test = Test::new(&spectra);
-    let but = if trembling(view, &spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
-    let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(&spectra));
+    let Some(spectra) = spectra else { return none("no rest on something solid that is long enough") };
+    let test = Test::new(spectra);
+    let but = if trembling(view, spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
+    let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
     let mut outcome =
-        Outcome { limit: limit(&CARD, 1e3 * least_g(&spectra, &test), "mg", &why), ..Outcome::default() };
+        Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
     let rounded = |triad: usize| {
         let axes = 3 * triad..3 * triad + 3;
         median(axes.map(|c| view.sigma[c] / view.step[c].max(1e-12)).collect()) < 0.45
     };
-    let lines: Vec<Line> = (0..2).filter(|triad| !rounded(*triad)).filter_map(|triad| line(view, &spectra, &test, triad, rocking_hz)).collect();
+    let lines: Vec<Line> = (0..2).filter(|triad| !rounded(*triad)).filter_map(|triad| line(view, spectra, &test, triad, rocking_hz)).collect();
     let Some(strongest) = lines.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p)) else { return outcome };
     let mut parameters = Vec::new();
     let (mut mask, mut sharpest) = (0, 0.0_f64);
     for (triad, name, unit, times) in [(1, "force_peak", "mg", 1e3), (0, "rate_peak", "dps", 1.0)] {
         if lines.iter().any(|line| line.triad == triad) {
-            let (peak, strength) = amplitude(&spectra, triad, strongest.bin);
+            let (peak, strength) = amplitude(spectra, triad, strongest.bin);
             parameters.push(value(name, times * peak, times * peak * (1.0 / strength.max(1.0) + 1e-4).sqrt(), unit));
             mask |= 7 << (3 * triad);
             sharpest = sharpest.max(strength);
@@ -114,7 +114,7 @@ pub fn examine(view: &View, rocking_hz: Option<f64>) -> Outcome {
     }
     // √(12/λ)/(2πT) is the Cramér-Rao bound of a sine's frequency; the grid adds a fortieth of its spacing.
     let sigma_hz = 0.55 * spectra.resolution_hz / sharpest.max(1.0).sqrt() + 0.025 * spectra.bin_hz;
-    parameters.insert(0, value("frequency", centre(&spectra, strongest), sigma_hz, "Hz"));
+    parameters.insert(0, value("frequency", centre(spectra, strongest), sigma_hz, "Hz"));
     let (start, end) = (view.rests[0].samples.start, view.rests[view.rests.len() - 1].samples.end);
     outcome.found = Some(found(&CARD, (-strongest.ln_p).min(1e4), parameters, view.place(mask, start..end)));
     outcome
@@ -144,9 +144,11 @@ fn line(view: &View, spectra: &Spectra, test: &Test, triad: usize, rocking_hz: O
 }
 
 /// Whether a hand holds the box.
-fn trembling(view: &View, spectra: &Spectra) -> bool {
+pub fn trembling(view: &View, spectra: &Spectra) -> bool {
     let noise = |low_hz: f64, high_hz: f64| {
-        median((spectra.bin(low_hz)..spectra.bin(high_hz)).map(|bin| spectra.cross[bin][0].trace()).collect())
+        // The lower quartile: a line's own skirts are not to be taken for a hand.
+        let bins = spectra.bin(low_hz)..spectra.bin(high_hz);
+        quantile(&mut bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>(), 0.25)
     };
     let calm = noise(CALM_HZ.start, CALM_HZ.end);
     let (sways, trembles) = (noise(LEAST_HZ, SWAY_HZ), noise(SWAY_HZ, TREMOR_HZ));

@@ -52,7 +52,7 @@ impl Spectra {
         let transformed: Vec<Transforms> = pieces
             .iter()
             .map(|piece| {
-                let shape = taper(piece.len());
+                let shape = taper(piece.len(), TAPER);
                 let (sum, squares) = shape.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
                 gain += sum * sum / squares / pieces.len() as f64;
                 let scaled: Vec<f64> = shape.iter().map(|w| w / squares.sqrt()).collect();
@@ -93,8 +93,9 @@ fn pieces(view: &View) -> Vec<std::ops::Range<usize>> {
     view.rests.iter().flat_map(cut).collect()
 }
 
-fn taper(length: usize) -> Vec<f64> {
-    let edge = (TAPER * length as f64).max(1.0);
+/// Ones, with half a cosine over a share of the length at either end.
+pub fn taper(length: usize, share: f64) -> Vec<f64> {
+    let edge = (share * length as f64).max(1.0);
     let weight = |k: usize| {
         let from_end = (k as f64 + 0.5).min(length as f64 - k as f64 - 0.5);
         if from_end < edge { 0.5 - 0.5 * (PI * from_end / edge).cos() } else { 1.0 }
