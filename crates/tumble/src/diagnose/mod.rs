@@ -15,8 +15,8 @@ pub mod prepare;
 pub mod promise;
 pub mod report;
 mod run;
-mod second;
 pub mod search;
+mod second;
 pub mod transfer;
 pub mod twin;
 

@@ -9,12 +9,12 @@ use super::exhibits::{self, Exhibits};
 use super::findings;
 use super::gates::Gated;
 use super::intake::{Intake, intake, intake_without_moves};
-use super::second;
 use super::judge::{Judged, judge};
 use super::limits;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
 use super::search::unknown::{self, Leftover};
+use super::second;
 use super::twin::Twin;
 use crate::recording::Recording;
 

@@ -32,7 +32,8 @@ pub fn settle(recording: &Recording, first: Outcome, second: Outcome) -> Outcome
     let resolved = second.diagnosis.unknown.is_none() && (first.diagnosis.unknown.is_some() || !gone.is_empty());
     let Some(rate_hz) = rate_hz(recording).filter(|_| resolved && second.exhibits.is_some()) else { return first };
     let unknown = first.diagnosis.unknown.as_ref();
-    let place = unknown.map(|unknown| unknown.place.clone()).or_else(|| gone.first().map(|effect| effect.place.clone()));
+    let place =
+        unknown.map(|unknown| unknown.place.clone()).or_else(|| gone.first().map(|effect| effect.place.clone()));
     let Some(place) = place else { return first };
     let odds = unknown.map_or(0.0, |unknown| -unknown.p_value.max(1e-300).ln());
     let evidence = gone.iter().map(|effect| effect.evidence).fold(odds, f64::max);

@@ -45,6 +45,11 @@ pub fn shift_seen(threshold: f64, freedom: f64) -> f64 {
     0.5 * ((half + (half * half + rest).sqrt()).powi(2) - freedom)
 }
 
+/// The mean of a count that reaches `count` in 95 of 100: m − 1.645·√m = count (a Poisson variable, nearly normal).
+pub fn mean_seen(count: f64) -> f64 {
+    (0.5 * (SURE + (SURE * SURE + 4.0 * count).sqrt())).powi(2)
+}
+
 /// Middle value; NaN of nothing.
 pub fn median(mut values: Vec<f64>) -> f64 {
     quantile(&mut values, 0.5)

@@ -10,7 +10,7 @@
 //! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
 //! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates'
-//! scatter, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 2 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
+//! scatter, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
 //! Where rounding hides the noise (σ < 0.35 steps) it makes lines of its own: such a triad is passed over.
 //!
 //! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
@@ -25,8 +25,8 @@ use super::view::View;
 use crate::diagnose::catalogue::Card;
 
 const LEAST_HZ: f64 = 2.0;
-/// A hand sways up to the one and trembles up to the other.
-const SWAY_HZ: f64 = 6.0;
+/// A hand sways up to 6 Hz (a table rocks below 4, and is no hand) and trembles above.
+const SWAY_HZ: std::ops::Range<f64> = 4.0..6.0;
 const TREMOR_HZ: f64 = 15.0;
 const TREMBLING_DPS: f64 = 0.3;
 /// Where there is none of it, for comparison.
@@ -94,13 +94,15 @@ pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) 
     let test = Test::new(spectra);
     let but = if trembling(view, spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
     let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
-    let mut outcome =
-        Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
+    let mut outcome = Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
     let rounded = |triad: usize| {
         let axes = 3 * triad..3 * triad + 3;
         median(axes.map(|c| view.sigma[c] / view.step[c].max(1e-12)).collect()) < 0.45
     };
-    let lines: Vec<Line> = (0..2).filter(|triad| !rounded(*triad)).filter_map(|triad| line(view, spectra, &test, triad, rocking_hz)).collect();
+    let lines: Vec<Line> = (0..2)
+        .filter(|triad| !rounded(*triad))
+        .filter_map(|triad| line(view, spectra, &test, triad, rocking_hz))
+        .collect();
     let Some(strongest) = lines.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p)) else { return outcome };
     let mut parameters = Vec::new();
     let (mut mask, mut sharpest) = (0, 0.0_f64);
@@ -151,7 +153,7 @@ pub fn trembling(view: &View, spectra: &Spectra) -> bool {
         quantile(&mut bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>(), 0.25)
     };
     let calm = noise(CALM_HZ.start, CALM_HZ.end);
-    let (sways, trembles) = (noise(LEAST_HZ, SWAY_HZ), noise(SWAY_HZ, TREMOR_HZ));
+    let (sways, trembles) = (noise(SWAY_HZ.start, SWAY_HZ.end), noise(SWAY_HZ.end, TREMOR_HZ));
     median(view.sigma[..3].to_vec()) > TREMBLING_DPS || sways.max(trembles) > TREMBLING * calm
 }
 
@@ -179,7 +181,8 @@ fn whitened(spectra: &Spectra, triad: usize, bin: usize, floor: &Vector3<f64>) -
 fn narrow(spectra: &Spectra, triad: usize, bin: usize) -> bool {
     let floor = floor(spectra, triad, bin);
     let off = (3.0 * spectra.resolution_hz / spectra.bin_hz).round() as usize;
-    let excess = |k: usize| spectra.cross.get(k).map_or(0.0, |_| whitened(spectra, triad, k, &floor).trace() / 3.0 - 1.0);
+    let excess =
+        |k: usize| spectra.cross.get(k).map_or(0.0, |_| whitened(spectra, triad, k, &floor).trace() / 3.0 - 1.0);
     let least = excess(bin) / 3.0 + 3.0 / (3.0 * spectra.pieces).sqrt();
     excess(bin.saturating_sub(off)) < least && excess(bin + off) < least
 }

@@ -134,7 +134,16 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(line);
     gated.take(aliasing::examine(&view));
     // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
-    let rotation = ["gyro_saturation", "gyro_coarse_quantization", "axis_mapping", "wrong_full_scale", "undersampling"];
+    let rotation = [
+        "gyro_saturation",
+        "gyro_coarse_quantization",
+        "axis_mapping",
+        "wrong_full_scale",
+        "undersampling",
+        // Products of rates and wrong intervals tilt the axis of a turn: steps of 10 ms by more than a degree.
+        "timestamp_jitter",
+        "timestamp_quantization",
+    ];
     if !gated.found.iter().any(|found| rotation.contains(&found.id.as_str())) {
         gated.take(wobble::examine(&view));
         gated.take(closure::examine(&view));

@@ -184,7 +184,8 @@ fn decimated(view: &View, rest: &Rest) -> Quiet {
 
 /// Over rests of at least one period, weighted by length.
 fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
-    let mut all = Swing { hz, rests: 0.0, samples: 0.0, across: 0.0, along: 0.0, force: 0.0, product: 0.0, square: 0.0 };
+    let mut all =
+        Swing { hz, rests: 0.0, samples: 0.0, across: 0.0, along: 0.0, force: 0.0, product: 0.0, square: 0.0 };
     for rest in rests.iter().filter(|rest| rest.dt_s * rest.means.len() as f64 * hz >= 1.0) {
         let shape = taper(rest.means.len(), TAPER);
         let (sum, squares) = shape.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
@@ -214,5 +215,10 @@ fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
         all.samples += count;
     }
     let share = 1.0 / all.samples;
-    (all.rests >= 2.0).then(|| Swing { across: all.across * share, along: all.along * share, force: all.force * share, ..all })
+    (all.rests >= 2.0).then(|| Swing {
+        across: all.across * share,
+        along: all.along * share,
+        force: all.force * share,
+        ..all
+    })
 }

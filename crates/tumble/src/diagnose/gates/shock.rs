@@ -142,7 +142,8 @@ impl Calm {
         }
         let sides = [burst.start - around..burst.start - gap, burst.end + gap..burst.end + around];
         let largest = |range: &Range<usize>| rough[range.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
-        let square = |range: &Range<usize>| rough[range.clone()].iter().map(|v| v * v).sum::<f64>() / range.len() as f64;
+        let square =
+            |range: &Range<usize>| rough[range.clone()].iter().map(|v| v * v).sum::<f64>() / range.len() as f64;
         same_motion(view, &sides[0], &sides[1]).then(|| Self {
             rms: square(&sides[0]).max(square(&sides[1])).sqrt(),
             largest: largest(&sides[0]).max(largest(&sides[1])),

@@ -116,11 +116,7 @@ fn transforms(view: &View, piece: std::ops::Range<usize>, shape: &[f64], size: u
         let split = |sign: f64| {
             move |k: usize, both: &[(f64, f64)]| {
                 let (a, b) = (both[k], both[(size - k) % size]);
-                if sign > 0.0 {
-                    (0.5 * (a.0 + b.0), 0.5 * (a.1 - b.1))
-                } else {
-                    (0.5 * (a.1 + b.1), 0.5 * (b.0 - a.0))
-                }
+                if sign > 0.0 { (0.5 * (a.0 + b.0), 0.5 * (a.1 - b.1)) } else { (0.5 * (a.1 + b.1), 0.5 * (b.0 - a.0)) }
             }
         };
         for sign in [1.0, -1.0] {
