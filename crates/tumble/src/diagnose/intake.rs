@@ -1,6 +1,7 @@
 //! A recording through the gates, what they repair and mask, and its twin: how every diagnosis and every trial begins.
 
 use tumble_core::estimate::Conditions;
+use tumble_core::tape::Kind;
 
 use super::gates::{self, Gated, Scene};
 use super::prepare::{Prepared, prepare_settled};
@@ -20,6 +21,15 @@ pub struct Intake {
 
 /// Takes a recording in.
 pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
+    take(recording, conditions, false)
+}
+
+/// The same, but rotation while the box is moved from face to face is taken for lost.
+pub fn intake_without_moves(recording: &Recording, conditions: Option<Conditions>) -> Intake {
+    take(recording, conditions, true)
+}
+
+fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bool) -> Intake {
     let inference = Inference::of(recording);
     let origin_s = recording.origin_s();
     let conditions = conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
@@ -34,11 +44,16 @@ pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
         let prepared = Err(stop.clone());
         return Intake { gated, conditions, prepared };
     }
+    let mut masked = masked(&gated);
+    if without_moves {
+        let segments = settled.tape.segments().iter().enumerate();
+        masked.extend(segments.filter(|(_, segment)| matches!(segment.kind, Kind::Hand)).map(|(number, _)| number));
+    }
     if !gated.repaired.is_empty() || gated.remap.is_some() {
         repair(&mut samples, &mut readings, &gated);
         settled = Session { readings: &readings, origin_s, lost, conditions }.settle(&mut |_| {});
     }
-    let prepared = prepare_settled(samples, &settled, conditions, &masked(&gated)).map_err(|why| why.0);
+    let prepared = prepare_settled(samples, &settled, conditions, &masked).map_err(|why| why.0);
     Intake { gated, conditions, prepared }
 }
 

@@ -17,6 +17,7 @@ pub mod promise;
 pub mod report;
 mod run;
 pub mod search;
+mod second;
 mod settings;
 pub mod transfer;
 pub mod twin;

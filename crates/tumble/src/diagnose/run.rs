@@ -8,12 +8,13 @@ use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
 use super::exhibits::{self, Exhibits};
 use super::findings;
 use super::gates::Gated;
-use super::intake::{Intake, intake};
+use super::intake::{Intake, intake, intake_without_moves};
 use super::judge::{Judged, judge};
 use super::limits;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
 use super::search::unknown::{self, Leftover};
+use super::second;
 use super::twin::Twin;
 use crate::recording::Recording;
 
@@ -50,8 +51,17 @@ pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;
 /// Diagnoses a recording.
 pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progress) -> Outcome {
     progress("reading", 0.0);
+    let first = look(recording, intake(recording, options.conditions), options, progress);
+    if !second::is_due(recording, &first.diagnosis) {
+        return first;
+    }
+    let again = look(recording, intake_without_moves(recording, options.conditions), options, progress);
+    second::settle(recording, first, again)
+}
+
+fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut Progress) -> Outcome {
     let origin_s = recording.origin_s();
-    let Intake { gated, conditions, prepared } = intake(recording, options.conditions);
+    let Intake { gated, conditions, prepared } = taken;
     let prepared = match prepared {
         Ok(prepared) => prepared,
         Err(why) => return without_physics(&gated, why),

@@ -34,6 +34,22 @@ pub fn mean_square_quantile(ln_p: f64, freedom: f64) -> f64 {
     high
 }
 
+/// One-sided 95 % of a normal: what a limit leaves to chance.
+pub const SURE: f64 = 1.645;
+
+/// The non-centrality λ at which a χ² of `freedom` is above `threshold` in 95 of 100: λ − 1.645·√(2·(freedom + 2λ)) =
+/// threshold − freedom, by its mean and variance.
+pub fn shift_seen(threshold: f64, freedom: f64) -> f64 {
+    // With y = √(freedom + 2λ): y² − 2·1.645·√2·y = 2·threshold − freedom.
+    let (half, rest) = (SURE * std::f64::consts::SQRT_2, (2.0 * threshold - freedom).max(0.0));
+    0.5 * ((half + (half * half + rest).sqrt()).powi(2) - freedom)
+}
+
+/// The mean of a count that reaches `count` in 95 of 100: m − 1.645·√m = count (a Poisson variable, nearly normal).
+pub fn mean_seen(count: f64) -> f64 {
+    (0.5 * (SURE + (SURE * SURE + 4.0 * count).sqrt())).powi(2)
+}
+
 /// Middle value; NaN of nothing.
 pub fn median(mut values: Vec<f64>) -> f64 {
     quantile(&mut values, 0.5)
@@ -60,5 +76,7 @@ mod tests {
         assert!((-38.8..-31.0).contains(&ln_coin_tail(90.0, 100.0)));
         let ratio = mean_square_quantile(-9.0, 20.0);
         assert!((ln_mean_square_tail(ratio, 20.0) + 9.0).abs() < 1e-6);
+        let shift = shift_seen(60.0, 24.0);
+        assert!((shift - SURE * (2.0 * (24.0 + 2.0 * shift)).sqrt() - 36.0).abs() < 1e-9);
     }
 }

@@ -5,7 +5,7 @@
 //! shifts a turn by less than a trapezoid's error. Where stamps themselves scatter by a quarter of T, a gap is told from a late
 //! stamp only by what stays: the stamps after it are later than those before by the whole gap, in the mean of eight.
 
-use super::chance::quantile;
+use super::chance::{mean_seen, quantile};
 use super::tell::{Outcome, found, limit, untestable, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
@@ -36,7 +36,8 @@ pub fn examine(view: &View, steps: bool) -> Outcome {
     let lost: f64 = gaps.iter().map(|gap| gap.1).sum();
     let share = lost / (lost + view.len() as f64);
     let longest_s = gaps.iter().map(|gap| gap.1 * view.dt_s).fold(0.0, f64::max);
-    let mut outcome = Outcome { limit: limit(&CARD, 100.0 * LEAST_SHARE, "%", ""), ..Outcome::default() };
+    let least = mean_seen((LEAST_SHARE * view.len() as f64).max(3.0)) / view.len() as f64;
+    let mut outcome = Outcome { limit: limit(&CARD, 100.0 * least, "%", ""), ..Outcome::default() };
     if (gaps.len() >= 3 && share >= LEAST_SHARE) || longest_s >= LONG_S {
         let sigma = 100.0 * lost.sqrt() / view.len() as f64;
         let parameters = vec![

@@ -1,22 +1,44 @@
 //! A steady hum (`vibration_line`).
 //!
-//! Statistic: at every bin of the mean periodogram over W windows of rests, from 3 Hz to half the rate, the ratio of power to
-//! the median of the bins 4 to 12 away on both sides, averaged over a triad's three axes. Under noise of any smooth
-//! spectrum that is a mean of 6·W·0.9 squared normals (Hann, half overlap); its quantile at e⁻¹¹·⁵ over all bins and both
-//! triads is by Chernoff. The floor is itself uncertain by 1.25/√(16·W) and, on the flank of a low-pass, off by a few per
-//! cent: the quantile is taken times 1.25·(1 + 6·1.25/√(48·W)). A line is narrow: three bins off it has fallen to a
-//! fifth; a hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not, and in its band nothing is told where rates scatter by
-//! more than 0.3 °/s.
+//! Statistic: at every bin from 2 Hz to half the rate, X X† of a triad (3 axes) summed over R pieces of rest, over the noise p of
+//! each axis there: with one direction for all of it (a hum of the box), 2·λ₁ of the real part, else 2·its trace. Under noise the
+//! trace is χ² of 6R; λ₁ is at most 1/cos²(10°) times the largest of 120 directions that lie within 10° of any (a hemisphere over a
+//! cap, and a quarter more for the overlap), each χ² of 2R. Both tails are Chernoff's, over all bins, two triads and two statistics,
+//! at e⁻¹¹·⁵. Within a piece (10 s at most) phase counts, between pieces it does not: what hums drifts.
+//!
+//! p is the geometric mean of the medians of the bins 3 to 12 resolutions off to either side: exact on any flank that falls
+//! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
+//! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
+//! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates'
+//! scatter, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
+//! Where rounding hides the noise (σ < 0.35 steps) it makes lines of its own: such a triad is passed over.
+//!
+//! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
+//! = threshold − 2R (non-central χ²), and A² = 2·p·λ/Σ(Σw)²/Σw², at the noise p of the loudest twentieth of the band.
 
-use super::chance::{LN_ALARM, mean_square_quantile, median};
-use super::spectrum::Windows;
+use nalgebra::Vector3;
+
+use super::chance::{LN_ALARM, ln_mean_square_tail, mean_square_quantile, median, quantile, shift_seen};
+use super::spectrum::Spectra;
 use super::tell::{Outcome, found, limit, untestable, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
 
-const LEAST_HZ: f64 = 3.0;
-const TREMOR_HZ: std::ops::Range<f64> = 5.0..15.0;
+const LEAST_HZ: f64 = 2.0;
+/// A hand sways up to 6 Hz (a table rocks below 4, and is no hand) and trembles above.
+const SWAY_HZ: std::ops::Range<f64> = 4.0..6.0;
+const TREMOR_HZ: f64 = 15.0;
 const TREMBLING_DPS: f64 = 0.3;
+/// Where there is none of it, for comparison.
+const CALM_HZ: std::ops::Range<f64> = 16.0..30.0;
+const TREMBLING: f64 = 1.5;
+/// Bend of a smooth spectrum over the bins that the floor is taken from.
+const BEND: f64 = 1.05;
+/// ln of how many directions stand for all, and cos² of how far any is from the next.
+const LN_DIRECTIONS: f64 = 4.8;
+const NEAR: f64 = 0.97;
+/// Of the bins where a line is sought half a bin off: what is lost, in the mean.
+const SCALLOP: f64 = 0.95;
 
 pub(super) const CARD: Card = Card {
     id: "vibration_line",
@@ -28,112 +50,166 @@ pub(super) const CARD: Card = Card {
     separate_by: "switch off what hums, or record at another rate: a folded line moves, a true one stays",
 };
 
+/// A triad's strongest.
 struct Line {
-    hz: f64,
-    sigma_hz: f64,
-    ratio: f64,
-    threshold: f64,
-    freedom: f64,
+    triad: usize,
+    bin: usize,
+    ln_p: f64,
 }
 
-/// The gate.
-pub fn examine(view: &View) -> Outcome {
+/// Thresholds in what a statistic is over its mean.
+struct Test {
+    /// Over 6R, over 2R.
+    freedom: [f64; 2],
+    /// What their excess over one is divided by, for the floor's own scatter.
+    wider: [f64; 2],
+    ln_alarm: f64,
+}
+
+impl Test {
+    fn new(spectra: &Spectra) -> Self {
+        let freedom = [6.0 * spectra.pieces, 2.0 * spectra.pieces];
+        let floor = 1.57 / (18.0 * spectra.pieces);
+        let wider = [freedom[0] * floor / 3.0, freedom[1] * floor].map(|share| (1.0 + 0.5 * share).sqrt());
+        Self { freedom, wider, ln_alarm: LN_ALARM - (4.0 * spectra.cross.len() as f64).ln() }
+    }
+
+    /// ln of the chance of as much, the better of both statistics.
+    fn ln_p(&self, whitened: &nalgebra::Matrix3<f64>) -> f64 {
+        let narrowed = |ratio: f64, k: usize| 1.0 + (ratio - 1.0) / self.wider[k];
+        let all = ln_mean_square_tail(narrowed(whitened.trace() / 3.0, 0), self.freedom[0]);
+        // λ₁ is at most the trace: most bins need no eigenvalues.
+        if LN_DIRECTIONS + ln_mean_square_tail(narrowed(NEAR * whitened.trace(), 1), self.freedom[1]) > self.ln_alarm {
+            return all;
+        }
+        let largest = whitened.symmetric_eigenvalues().max();
+        all.min(LN_DIRECTIONS + ln_mean_square_tail(narrowed(NEAR * largest, 1), self.freedom[1]))
+    }
+}
+
+/// The gate; `rocking_hz` is a table's, which is no hum.
+pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) -> Outcome {
     let none = |why: &str| Outcome { limit: untestable(&CARD, "mg", why), ..Outcome::default() };
-    let Some(windows) = Windows::new(view) else { return none("no rest on something solid that is long enough") };
-    let spectra: Vec<Vec<f64>> = view.channels.iter().map(|channel| windows.spectrum(channel).power).collect();
-    let lines: Vec<(usize, Line)> = [0, 3]
-        .into_iter()
-        .filter_map(|first| line(view, &windows, &spectra[first..first + 3]).map(|line| (first, line)))
+    let Some(spectra) = spectra else { return none("no rest on something solid that is long enough") };
+    let test = Test::new(spectra);
+    let but = if trembling(view, spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
+    let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
+    let mut outcome = Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
+    let rounded = |triad: usize| {
+        let axes = 3 * triad..3 * triad + 3;
+        median(axes.map(|c| view.sigma[c] / view.step[c].max(1e-12)).collect()) < 0.45
+    };
+    let lines: Vec<Line> = (0..2)
+        .filter(|triad| !rounded(*triad))
+        .filter_map(|triad| line(view, spectra, &test, triad, rocking_hz))
         .collect();
-    // A line as strong as noise of three axes together in one bin is found with certainty.
-    let floor = median(spectra[3..].iter().flatten().copied().filter(|p| *p > 0.0).collect());
-    let least_mg = 1e3 * windows.amplitude(3.0 * floor * 3.0_f64.sqrt() / (windows.count() as f64).sqrt().max(1.0));
-    let mut outcome = Outcome { limit: limit(&CARD, least_mg, "mg", ""), ..Outcome::default() };
-    let Some((_, strongest)) = lines.iter().max_by(|a, b| a.1.ratio.total_cmp(&b.1.ratio)) else { return outcome };
-    let mut parameters = vec![value("frequency", strongest.hz, strongest.sigma_hz, "Hz")];
-    let mut mask = 0;
-    for (first, unit, times) in [(3, "mg", 1e3), (0, "dps", 1.0)] {
-        if lines.iter().any(|(triad, _)| *triad == first) {
-            let (amplitude, sigma) = amplitude(&windows, &spectra[first..first + 3], strongest.hz);
-            let name = if first == 3 { "force_peak" } else { "rate_peak" };
-            parameters.push(value(name, times * amplitude, times * sigma, unit));
-            mask |= 7 << first;
+    let Some(strongest) = lines.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p)) else { return outcome };
+    let mut parameters = Vec::new();
+    let (mut mask, mut sharpest) = (0, 0.0_f64);
+    for (triad, name, unit, times) in [(1, "force_peak", "mg", 1e3), (0, "rate_peak", "dps", 1.0)] {
+        if lines.iter().any(|line| line.triad == triad) {
+            let (peak, strength) = amplitude(spectra, triad, strongest.bin);
+            parameters.push(value(name, times * peak, times * peak * (1.0 / strength.max(1.0) + 1e-4).sqrt(), unit));
+            mask |= 7 << (3 * triad);
+            sharpest = sharpest.max(strength);
         }
     }
-    let evidence = -super::chance::ln_mean_square_tail(strongest.ratio, strongest.freedom);
+    // √(12/λ)/(2πT) is the Cramér-Rao bound of a sine's frequency; the grid adds a fortieth of its spacing.
+    let sigma_hz = 0.55 * spectra.resolution_hz / sharpest.max(1.0).sqrt() + 0.025 * spectra.bin_hz;
+    parameters.insert(0, value("frequency", centre(spectra, strongest), sigma_hz, "Hz"));
     let (start, end) = (view.rests[0].samples.start, view.rests[view.rests.len() - 1].samples.end);
-    outcome.found = Some(found(&CARD, evidence.min(1e4), parameters, view.place(mask, start..end)));
+    outcome.found = Some(found(&CARD, (-strongest.ln_p).min(1e4), parameters, view.place(mask, start..end)));
     outcome
 }
 
-/// The triad's strongest line, if there is one.
-fn line(view: &View, windows: &Windows, spectra: &[Vec<f64>]) -> Option<Line> {
-    let bins = spectra[0].len();
-    let count = windows.count() as f64;
-    let freedom = 6.0 * 0.9 * count;
-    let first = ((LEAST_HZ / windows.bin_hz).ceil() as usize).max(4);
-    let ln_p = LN_ALARM - (2.0 * bins as f64).ln();
-    let allowance = 1.25 * (1.0 + 6.0 * 1.25 / (48.0 * count).sqrt());
-    let threshold = allowance * mean_square_quantile(ln_p, freedom);
-    let trembling = median(view.sigma[..3].to_vec()) > TREMBLING_DPS;
+/// Below five resolutions there is no floor to compare with.
+fn least_hz(spectra: &Spectra) -> f64 {
+    LEAST_HZ.max(5.0 * spectra.resolution_hz)
+}
+
+fn line(view: &View, spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -> Option<Line> {
+    let trembling = trembling(view, spectra);
+    let hidden = |hz: f64| {
+        (trembling && hz < TREMOR_HZ)
+            || rocking_hz.is_some_and(|rocking| (hz - rocking).abs() < 2.0 * spectra.resolution_hz)
+    };
+    let first = spectra.bin(least_hz(spectra));
     let mut best: Option<Line> = None;
-    for bin in first..bins.saturating_sub(1) {
-        let hz = bin as f64 * windows.bin_hz;
-        let ratio = ratio(spectra, bin);
-        let beyond = ratio > threshold && best.as_ref().is_none_or(|best| ratio > best.ratio);
-        if !beyond || (trembling && TREMOR_HZ.contains(&hz)) || !narrow(spectra, bin) {
-            continue;
+    for bin in first..spectra.cross.len().saturating_sub(2) {
+        let ln_p = test.ln_p(&whitened(spectra, triad, bin, &floor(spectra, triad, bin)));
+        let better = ln_p < best.as_ref().map_or(test.ln_alarm, |best| best.ln_p);
+        if better && !hidden(bin as f64 * spectra.bin_hz) && narrow(spectra, triad, bin) {
+            best = Some(Line { triad, bin, ln_p });
         }
-        let share = (1.0 / (ratio * count)).sqrt();
-        best = Some(Line {
-            hz: centre(spectra, bin) * windows.bin_hz,
-            sigma_hz: (0.3 * share + 0.02) * windows.bin_hz,
-            ratio,
-            threshold,
-            freedom,
-        });
     }
-    best.filter(|best| best.ratio > best.threshold)
+    best
 }
 
-fn floor(power: &[f64], bin: usize) -> f64 {
-    let low = bin.saturating_sub(12).max(2)..bin.saturating_sub(3).max(2);
-    let high = (bin + 4).min(power.len())..(bin + 13).min(power.len());
-    median(low.chain(high).map(|k| power[k]).collect())
-}
-
-fn ratio(spectra: &[Vec<f64>], bin: usize) -> f64 {
-    spectra.iter().map(|power| power[bin] / floor(power, bin).max(1e-30)).sum::<f64>() / 3.0
-}
-
-fn narrow(spectra: &[Vec<f64>], bin: usize) -> bool {
-    let excess = |k: usize| {
-        let of = |power: &Vec<f64>| power.get(k).map_or(0.0, |p| (p / floor(power, bin).max(1e-30) - 1.0).max(0.0));
-        spectra.iter().map(of).sum::<f64>()
+/// Whether a hand holds the box.
+pub fn trembling(view: &View, spectra: &Spectra) -> bool {
+    let noise = |low_hz: f64, high_hz: f64| {
+        // The lower quartile: a line's own skirts are not to be taken for a hand.
+        let bins = spectra.bin(low_hz)..spectra.bin(high_hz);
+        quantile(&mut bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>(), 0.25)
     };
-    let centre = excess(bin);
-    excess(bin - 3) < 0.2 * centre && excess(bin + 3) < 0.2 * centre
+    let calm = noise(CALM_HZ.start, CALM_HZ.end);
+    let (sways, trembles) = (noise(SWAY_HZ.start, SWAY_HZ.end), noise(SWAY_HZ.end, TREMOR_HZ));
+    median(view.sigma[..3].to_vec()) > TREMBLING_DPS || sways.max(trembles) > TREMBLING * calm
 }
 
-/// Bin by the excess' centre of gravity.
-fn centre(spectra: &[Vec<f64>], bin: usize) -> f64 {
-    let excess = |k: usize| {
-        spectra.iter().map(|power| power.get(k).map_or(0.0, |p| p / floor(power, bin).max(1e-30))).sum::<f64>()
-    };
-    let near = [bin - 1, bin, bin + 1];
-    let sum: f64 = near.iter().map(|k| excess(*k)).sum();
-    near.iter().map(|k| *k as f64 * excess(*k)).sum::<f64>() / sum
+/// Noise of each axis about a bin.
+fn floor(spectra: &Spectra, triad: usize, bin: usize) -> Vector3<f64> {
+    let off = |resolutions: f64| (resolutions * spectra.resolution_hz / spectra.bin_hz).round() as usize;
+    let count = spectra.cross.len();
+    let low = bin.saturating_sub(off(12.0)).max(off(2.0))..bin.saturating_sub(off(3.0)).max(off(2.0));
+    let high = (bin + off(3.0)).min(count)..(bin + off(12.0)).min(count);
+    // The median of a mean of R exponentials is (1 − 1/9R)³ of their mean (Wilson and Hilferty).
+    let share = (1.0 - 1.0 / (9.0 * spectra.pieces)).powi(3) / BEND;
+    Vector3::from_fn(|axis, _| {
+        let side = |bins: std::ops::Range<usize>| median(bins.map(|k| spectra.cross[k][triad][(axis, axis)]).collect());
+        let (low, high) = (side(low.clone()), side(high.clone()));
+        let both = if low.is_nan() || high.is_nan() { low.max(high) } else { (low * high).sqrt() };
+        (both / share).max(1e-30)
+    })
 }
 
-/// Length of the triad's peak and its sigma.
-fn amplitude(windows: &Windows, spectra: &[Vec<f64>], hz: f64) -> (f64, f64) {
-    let bin = (hz / windows.bin_hz).round() as usize;
-    let (mut excess, mut noise) = (0.0, 0.0);
-    for power in spectra {
-        let floor = floor(power, bin);
-        noise += 5.0 * floor;
-        excess += (bin.saturating_sub(2)..(bin + 3).min(power.len())).map(|k| power[k] - floor).sum::<f64>();
-    }
-    let amplitude = windows.amplitude(excess);
-    (amplitude, 0.5 * amplitude * noise / (excess.max(1e-30) * (windows.count() as f64).sqrt()) + 0.01 * amplitude)
+fn whitened(spectra: &Spectra, triad: usize, bin: usize, floor: &Vector3<f64>) -> nalgebra::Matrix3<f64> {
+    let weight = floor.map(|p| 1.0 / p.sqrt());
+    spectra.cross[bin][triad].component_mul(&(weight * weight.transpose()))
+}
+
+fn narrow(spectra: &Spectra, triad: usize, bin: usize) -> bool {
+    let floor = floor(spectra, triad, bin);
+    let off = (3.0 * spectra.resolution_hz / spectra.bin_hz).round() as usize;
+    let excess =
+        |k: usize| spectra.cross.get(k).map_or(0.0, |_| whitened(spectra, triad, k, &floor).trace() / 3.0 - 1.0);
+    let least = excess(bin) / 3.0 + 3.0 / (3.0 * spectra.pieces).sqrt();
+    excess(bin.saturating_sub(off)) < least && excess(bin + off) < least
+}
+
+/// Bin by the parabola through the logarithms of the three about the peak, Hz.
+fn centre(spectra: &Spectra, line: &Line) -> f64 {
+    let log = |k: usize| spectra.cross[k][line.triad].trace().max(1e-30).ln();
+    let (before, at, after) = (log(line.bin - 1), log(line.bin), log(line.bin + 1));
+    let bend = before - 2.0 * at + after;
+    let shift = if bend < 0.0 { (0.5 * (before - after) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+    (line.bin as f64 + shift) * spectra.bin_hz
+}
+
+/// The triad's peak, and λ: its square over its variance.
+fn amplitude(spectra: &Spectra, triad: usize, bin: usize) -> (f64, f64) {
+    let floor = floor(spectra, triad, bin);
+    let excess = (spectra.cross[bin][triad].trace() - floor.sum()).max(0.0);
+    let peak = (4.0 * excess / spectra.gain).sqrt();
+    (peak, 2.0 * excess * spectra.pieces / (floor.sum() / 3.0))
+}
+
+/// The smallest line that is found in 95 of 100, g.
+fn least_g(spectra: &Spectra, test: &Test) -> f64 {
+    let first = spectra.bin(least_hz(spectra));
+    let mut noise: Vec<f64> = (first..spectra.cross.len()).step_by(8).map(|bin| floor(spectra, 1, bin).max()).collect();
+    let ratio = mean_square_quantile(test.ln_alarm - LN_DIRECTIONS, test.freedom[1]);
+    let threshold = test.freedom[1] * (1.0 + test.wider[1] * (ratio - 1.0)) / NEAR;
+    let needed = shift_seen(threshold, test.freedom[1]);
+    (2.0 * quantile(&mut noise, 0.95) * needed / (SCALLOP * spectra.gain * spectra.pieces)).sqrt()
 }

@@ -27,6 +27,8 @@ use super::catalogue::Card;
 use super::diagnosis::{Found, Limit};
 use super::twin::data::Raw;
 use crate::recording::{Inference, Recording};
+pub use aliasing::in_moves;
+use spectrum::Spectra;
 use tell::Outcome;
 use tumble_core::tape::Segment;
 use view::View;
@@ -124,12 +126,24 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(mapped.axes);
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
-    let rocking = rocking::examine(&view);
+    let spectra = Spectra::new(&view);
+    let rocking = rocking::examine(&view, spectra.as_ref().is_some_and(|spectra| line::trembling(&view, spectra)));
+    let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
+    let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
-    gated.take(line::examine(&view));
+    gated.take(line);
     gated.take(aliasing::examine(&view));
     // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
-    let rotation = ["gyro_saturation", "gyro_coarse_quantization", "axis_mapping", "wrong_full_scale", "undersampling"];
+    let rotation = [
+        "gyro_saturation",
+        "gyro_coarse_quantization",
+        "axis_mapping",
+        "wrong_full_scale",
+        "undersampling",
+        // Products of rates and wrong intervals tilt the axis of a turn: steps of 10 ms by more than a degree.
+        "timestamp_jitter",
+        "timestamp_quantization",
+    ];
     if !gated.found.iter().any(|found| rotation.contains(&found.id.as_str())) {
         gated.take(wobble::examine(&view));
         gated.take(closure::examine(&view));

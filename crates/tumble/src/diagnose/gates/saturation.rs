@@ -1,6 +1,7 @@
 //! Readings that stand at a level which the motion passed (`gyro_saturation`, `accel_saturation`).
 //!
-//! Statistic: at a channel's extreme M, (1) exact repeats: three or more in a run. (2) Either *overshoot*: the parabolas through
+//! Statistic: at a channel's extreme M, (1) exact repeats: three or more in a run of 15 ms or more (at 500 Hz three readings at the
+//! peak of a hand's motion are alike now and then). (2) Either *overshoot*: the parabolas through
 //! the 80 ms before the run and after it (backwards), drawn on by half the run or 20 ms, are both past M by more than 8 sigmas
 //! of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends in the peak of any
 //! motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
@@ -23,6 +24,8 @@ use crate::recording::Basis;
 
 const IMITATED: &[&str] = &["gyro_scale_cubic", "gyro_scale_quadratic", "gyro_scale_asymmetry", "gyro_dead_zone"];
 const IMITATED_ACCEL: &[&str] = &["accel_cubic", "accel_quadratic"];
+/// Shortest flat top, s.
+const LEAST_S: f64 = 0.015;
 /// What the parabola is fitted to, s; it is drawn on for a quarter of that.
 const FIT_S: f64 = 0.08;
 
@@ -115,7 +118,8 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let runs: Vec<Range<usize>> =
         samples.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[run.len() - 1] + 1).collect();
     let fresh = |run: &Range<usize>| run.clone().filter(|i| stale.binary_search(i).is_err()).count();
-    let long: Vec<&Range<usize>> = runs.iter().filter(|run| fresh(run) >= 3).collect();
+    let least = view.count(LEAST_S).max(3);
+    let long: Vec<&Range<usize>> = runs.iter().filter(|run| fresh(run) >= least).collect();
     let margin = 8.0 * noise + 2.0 * step;
     let overshoots = long.iter().filter(|run| overshoots(view, values, run, sign, top + margin)).count();
     let next = values.iter().filter(|v| (top - 3.5 * step..top - 0.1 * step - 1e-9).contains(&(sign * **v))).count();

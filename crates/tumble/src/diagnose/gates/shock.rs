@@ -1,13 +1,17 @@
 //! A knock that the procedure does not bring about (`shock`).
 //!
 //! Statistic: the specific force less its median over ±60 ms. A knock is a burst of at most 35 ms (two samples at least) whose
-//! peak is above 12 times the rms of what surrounds it, from 1.2 s before to 1.2 s after, and above 0.05 g. A normal deviate
+//! peak is above 12 times the rms of what surrounds it, from 1.2 s (where motion changes sooner: 0.4 s) before to as much after, four
+//! times the largest of it, and above 0.05 g. A normal deviate
 //! reaches 12 sigmas with 1e-33: chance has no part in it. What must be kept out is what people do: put-downs, pushes and
 //! stops at a fence. They come where motion changes, so gravity's direction (3°) and the mean rate (3 °/s, or four tenths of the
-//! rate) must be the same before and after; a hand's moves fail the rms, since they are as rough everywhere. Within 1.2 s of
-//! the recording's ends nothing is told.
+//! rate) must be the same before and after; a hand's moves fail the rms, since they are as rough everywhere. Within 0.4 s of
+//! the recording's ends, of a put-down or of a hand that takes hold nothing is told.
+//!
+//! Limit: what is asked of a peak, at places all over the recording where motion does not change, at its 95th percentile; a half sine
+//! of two samples shows at least 0.71 of its peak, and the filter and the median take some more: over 0.6.
 
-use super::chance::median;
+use super::chance::{median, quantile};
 use super::tell::{Outcome, found, limit, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
@@ -17,7 +21,11 @@ use std::ops::Range;
 const IMITATED: &[&str] =
     &["gyro_bias_step", "accel_bias_step", "accel_quadratic", "gyro_g_squared", "platform_tilt_change"];
 const MEDIAN_S: f64 = 0.06;
-const AROUND_S: f64 = 1.2;
+const AROUND_S: [f64; 2] = [1.2, 0.4];
+/// Share of its peak that a short half sine shows.
+const SHOWN: f64 = 0.6;
+/// Places at which the limit is looked for, s.
+const PLACES_S: f64 = 0.25;
 const LONGEST_S: f64 = 0.035;
 const LEAST_G: f64 = 0.05;
 const TIMES: f64 = 12.0;
@@ -39,8 +47,8 @@ pub fn examine(view: &View, torn: &[usize]) -> Outcome {
     let rough = roughness(view, torn);
     let noise = (3..6).map(|c| view.sigma[c]).filter(|s| s.is_finite()).fold(0.0, f64::max);
     let least = LEAST_G.max(TIMES * noise);
-    let mut outcome =
-        Outcome { limit: limit(&CARD, least, "g", "in a rest or in the middle of a turn"), ..Outcome::default() };
+    let why = "half a second or more from where motion begins or ends";
+    let mut outcome = Outcome { limit: limit(&CARD, least_g(view, &rough, least), "g", why), ..Outcome::default() };
     let mut knocks: Vec<(Range<usize>, f64, f64)> = Vec::new();
     let mut index = 0;
     while index < rough.len() {
@@ -109,22 +117,54 @@ fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
 
 /// Its peak and how many times the surrounding rms that is, if it is a knock.
 fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)> {
-    let (around, gap) = (view.count(AROUND_S), view.count(0.04).max(2));
     let length_s = burst.len() as f64 * view.dt_s;
-    let inside = burst.start >= around && burst.end + around <= view.len();
-    if burst.len() < 2 || length_s > LONGEST_S.max(3.5 * view.dt_s) || !inside {
+    if burst.len() < 2 || length_s > LONGEST_S.max(3.5 * view.dt_s) {
         return None;
     }
-    let before = burst.start - around..burst.start - gap;
-    let after = burst.end + gap..burst.end + around;
     let peak = rough[burst.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
-    let largest = |range: &Range<usize>| rough[range.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
-    let rms =
-        |range: &Range<usize>| (rough[range.clone()].iter().map(|v| v * v).sum::<f64>() / range.len() as f64).sqrt();
-    // Knocks beside it belong to a put-down, which bounces.
-    let alone = peak > 4.0 * largest(&before).max(largest(&after));
-    let over = peak / rms(&before).max(rms(&after)).max(1e-9);
-    (alone && over > TIMES && same_motion(view, &before, &after)).then_some((peak, over))
+    AROUND_S.into_iter().find_map(|around_s| {
+        let calm = Calm::about(view, rough, burst, around_s)?;
+        (peak > calm.asked()).then(|| (peak, peak / calm.rms.max(1e-9)))
+    })
+}
+
+/// What surrounds a place where motion does not change.
+struct Calm {
+    rms: f64,
+    largest: f64,
+}
+
+impl Calm {
+    fn about(view: &View, rough: &[f64], burst: &Range<usize>, around_s: f64) -> Option<Self> {
+        let (around, gap) = (view.count(around_s), view.count(0.04).max(2));
+        if burst.start < around || burst.end + around > view.len() || around < 2 * gap {
+            return None;
+        }
+        let sides = [burst.start - around..burst.start - gap, burst.end + gap..burst.end + around];
+        let largest = |range: &Range<usize>| rough[range.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
+        let square =
+            |range: &Range<usize>| rough[range.clone()].iter().map(|v| v * v).sum::<f64>() / range.len() as f64;
+        same_motion(view, &sides[0], &sides[1]).then(|| Self {
+            rms: square(&sides[0]).max(square(&sides[1])).sqrt(),
+            largest: largest(&sides[0]).max(largest(&sides[1])),
+        })
+    }
+
+    /// Of a peak. Knocks beside it belong to a put-down, which bounces: it must be four times as large.
+    fn asked(&self) -> f64 {
+        (TIMES * self.rms).max(4.0 * self.largest)
+    }
+}
+
+/// The smallest knock that is found in 95 of 100 places, g.
+fn least_g(view: &View, rough: &[f64], least: f64) -> f64 {
+    let asked = |place: usize| {
+        let here = place..place + 2;
+        let calm = |around_s| Calm::about(view, rough, &here, around_s).map(|calm| calm.asked().max(least));
+        AROUND_S.into_iter().filter_map(calm).reduce(f64::min)
+    };
+    let mut all: Vec<f64> = (0..rough.len()).step_by(view.count(PLACES_S)).filter_map(asked).collect();
+    quantile(&mut all, 0.95) / SHOWN
 }
 
 fn same_motion(view: &View, before: &Range<usize>, after: &Range<usize>) -> bool {

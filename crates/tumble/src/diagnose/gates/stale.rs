@@ -6,7 +6,7 @@
 //! is doubled, and half a pair added, for motion within a window. The count is then below a Poisson variable of that
 //! mean, whose tail is bounded by Chernoff.
 
-use super::chance::{LN_ALARM, ln_poisson_tail};
+use super::chance::{LN_ALARM, ln_poisson_tail, mean_seen};
 use super::tell::{Outcome, found, limit, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
@@ -48,7 +48,9 @@ pub fn examine(view: &View) -> Outcome {
     }
     let excess = stale.len() as f64 - expected;
     let share = excess / count as f64;
-    let least = (100.0 * LEAST_SHARE).max(100.0 * (expected + 5.0 * expected.sqrt() + 12.0) / count as f64);
+    // Repeats that must be seen: the share, or (Chernoff, nearly) five sigmas and twelve beyond what chance has.
+    let needed = (LEAST_SHARE * count as f64).max(5.0 * expected.sqrt() + 12.0);
+    let least = 100.0 * mean_seen(needed) / count as f64;
     let mut outcome = Outcome { limit: limit(&CARD, least, "%", ""), ..Outcome::default() };
     let ln_p = ln_poisson_tail(stale.len() as f64, expected);
     if share > LEAST_SHARE && ln_p < LN_ALARM {

@@ -10,7 +10,7 @@
 //! Steps: spacings are whole multiples of q, at least two different ones, both taken often, and the stamps stay within a
 //! few steps of an even grid (which lost samples, also multiples, do not).
 
-use super::chance::{median, quantile};
+use super::chance::{SURE, median, quantile};
 use super::tell::{Outcome, found, limit, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
@@ -51,7 +51,9 @@ pub(super) const STEPS: Card = Card {
 pub fn examine(view: &View) -> (Outcome, Outcome) {
     let dt: Vec<f64> = view.t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let limit_ms = 1e3 * view.dt_s;
-    let mut jitter = Outcome { limit: limit(&JITTER, LEAST_SHARE * limit_ms, "ms", ""), ..Outcome::default() };
+    // The rms of N errors scatters by 1/√(2N) of itself, half as much again as neighbours share one.
+    let surely = 1.0 + SURE * (0.75 / dt.len().max(1) as f64).sqrt();
+    let mut jitter = Outcome { limit: limit(&JITTER, surely * LEAST_SHARE * limit_ms, "ms", ""), ..Outcome::default() };
     let why = "a step that divides the interval to within 50 ppm does not show and does no harm";
     let mut steps = Outcome { limit: limit(&STEPS, LEAST_STEP * limit_ms, "ms", why), ..Outcome::default() };
     if dt.len() < 100 {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, log_mean};
 use super::null;
+use crate::diagnose::numbers::walk_value;
 use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
 use crate::diagnose::twin::rows::Rows;
 
@@ -91,6 +92,7 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
     let threshold = null::threshold(bench, &before, &null_scales, seed);
     let first = forward(bench, threshold, progress);
     challenge_walks(bench, threshold, progress);
+    refine_walks(bench);
     prune(bench, threshold);
     let (noise, evidence) = settle_walks(bench);
     let after = bench.rows(noise);
@@ -140,6 +142,18 @@ fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&
     } else {
         (bench.accepted, bench.wander) = kept;
         bench.refit();
+    }
+}
+
+/// Walks stand at levels a factor of four apart in variance, and what the level lacks another name may seem to have: each at its
+/// own maximum before what no longer pays goes.
+fn refine_walks(bench: &mut Bench) {
+    let walks: Vec<_> =
+        bench.accepted.iter().filter_map(|accepted| bench.candidates[accepted.candidate].walk).collect();
+    for (gyro, unit_si, unit) in walks {
+        let noise = settle_walks(bench).0;
+        bench.twin.noise = noise;
+        walk_value(bench, noise, gyro, unit_si, unit);
     }
 }
 
