@@ -215,7 +215,7 @@ fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
         all.samples += count;
     }
     let share = 1.0 / all.samples;
-    (all.rests >= 2.0).then(|| Swing {
+    (all.rests >= 2.0).then_some(Swing {
         across: all.across * share,
         along: all.along * share,
         force: all.force * share,
