@@ -172,9 +172,11 @@ impl Noise {
         self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
-    /// How crooked the box was found to be, rad, if it was called square and is certainly not.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the
+    /// sheet's sees some 40 µrad, which no person can mend and no two digits can say: 0.005° is the least that is told.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        self.facet_sigma_rad.filter(|_| self.crooked)
+        const LEAST_RAD: f32 = 87e-6;
+        self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_RAD)
     }
 
     /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean
