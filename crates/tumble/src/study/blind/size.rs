@@ -8,16 +8,11 @@ use super::answer::{Answer, Limit};
 use super::case::{self, Setting};
 use super::{strength, units};
 
-/// Effects that grow as their number falls, and variants: a multiple of a limit means nothing there. Nor does it for a clock's
-/// step: its limit is a tenth of the interval, and twice that divides the interval exactly, which leaves the stamps even.
-const DRAWN: [&str; 6] = [
-    "gyro_saturation",
-    "accel_saturation",
-    "undersampling",
-    "axis_mapping",
-    "wrong_full_scale",
-    "timestamp_quantization",
-];
+/// Variants: a multiple of a limit means nothing there. Nor does it for a clock's step: its limit is a tenth of the interval, and
+/// twice that divides the interval exactly, which leaves the stamps even.
+const DRAWN: [&str; 3] = ["axis_mapping", "wrong_full_scale", "timestamp_quantization"];
+/// Effects that grow as their number falls: twice the limit is half of it.
+const FALLING: [&str; 3] = ["gyro_saturation", "accel_saturation", "undersampling"];
 /// What the nominal world has already, in the simulation's unit: a lever of (3, 2, 1) cm, and the Earth's rate.
 const PRESENT: [(&str, f64); 2] = [("accel_lever_arm", 3.742), ("earth_rotation", 1.0)];
 /// Where the units differ by more than a name: ppm at 100 dps in a ppm/dps², Earth rates in a degree per hour.
@@ -97,7 +92,8 @@ fn present(id: &str) -> f64 {
 
 fn large(kind: &Kind, at: f64, limit: f64) -> f64 {
     let (low, high) = kind.values.bounds();
-    (present(kind.id) + at * limit).clamp(low, high)
+    let size = if FALLING.contains(&kind.id) { limit / at } else { present(kind.id) + at * limit };
+    size.clamp(low, high)
 }
 
 /// The limit that the clean twin states: in the simulation's unit, in its own, and whether it is testable; or why there is none.
