@@ -9,9 +9,9 @@ use tumble_core::procedure::BoxFaces;
 use tumble_core::tape::{Exclusion, Kind, Segment};
 
 use crate::output::SegmentReport;
-use crate::recording::{Metadata, Reading};
 use crate::reference;
 use crate::settle::{self, HostTape};
+pub use crate::settle::{Session, conditions};
 
 /// What computes the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,18 +24,6 @@ pub enum Method {
     Gravity,
     /// The paper's method in the board's arithmetic: as printed, corrected, or its comparison method.
     TwoStep(two_step::Variant),
-}
-
-/// What is replayed.
-pub struct Session<'a> {
-    /// In order of time.
-    pub readings: &'a [Reading],
-    /// The recording's stamp at time 0 of the readings.
-    pub origin_s: f64,
-    /// Samples that never came.
-    pub lost: u32,
-    /// What is known of table and box.
-    pub conditions: Conditions,
 }
 
 /// What a session came to.
@@ -51,15 +39,6 @@ pub struct Outcome {
     pub covariance: Option<SMatrix<f32, PARAMETERS, PARAMETERS>>,
     /// What was found, by the recording's own stamps.
     pub segments: Vec<SegmentReport>,
-}
-
-/// What the metadata say of table and box, and the cautious default where they are silent.
-pub fn conditions(metadata: &Metadata) -> Conditions {
-    Conditions {
-        stops: metadata.turns.unwrap_or_default(),
-        faces: metadata.box_faces.unwrap_or_default(),
-        gravity_mps2: metadata.gravity_mps2.map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
-    }
 }
 
 impl Session<'_> {

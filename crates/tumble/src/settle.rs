@@ -7,8 +7,7 @@ use tumble_core::motion::MotionEvent;
 use tumble_core::motion::segmenter::Segmenter;
 use tumble_core::tape::Tape;
 
-use crate::calibrate::Session;
-use crate::recording::Reading;
+use crate::recording::{Metadata, Reading};
 
 /// Room for fifty minutes of motion (20 records a second), where the board has room for the session that it guides;
 /// nothing else differs.
@@ -20,6 +19,18 @@ const SEGMENTS: usize = 1024;
 const TOLERANCES: [f32; 3] = [1.0, 2.0, 4.0];
 /// Records walked between two signs of life.
 const SLICE: usize = 64;
+
+/// What is replayed.
+pub struct Session<'a> {
+    /// In order of time.
+    pub readings: &'a [Reading],
+    /// The recording's stamp at time 0 of the readings.
+    pub origin_s: f64,
+    /// Samples that never came.
+    pub lost: u32,
+    /// What is known of table and box.
+    pub conditions: Conditions,
+}
 
 /// The tape of a host.
 pub type HostTape = Tape<RECORDS, SEGMENTS>;
@@ -37,6 +48,15 @@ pub struct Settled {
     pub tolerance: f32,
     /// Under the session's own conditions.
     pub estimate: Estimated,
+}
+
+/// What the metadata say of table and box, and the cautious default where they are silent.
+pub fn conditions(metadata: &Metadata) -> Conditions {
+    Conditions {
+        stops: metadata.turns.unwrap_or_default(),
+        faces: metadata.box_faces.unwrap_or_default(),
+        gravity_mps2: metadata.gravity_mps2.map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
+    }
 }
 
 impl Settled {

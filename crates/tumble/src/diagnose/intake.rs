@@ -6,8 +6,9 @@ use tumble_core::tape::Kind;
 use super::gates::{self, Gated, Scene};
 use super::prepare::{Prepared, prepare_settled};
 use super::twin::data::Raw;
-use crate::calibrate::{self, Session};
+
 use crate::recording::{Inference, Reading, Recording};
+use crate::settle::{self, Session};
 
 /// What came of it.
 pub struct Intake {
@@ -32,7 +33,7 @@ pub fn intake_without_moves(recording: &Recording, conditions: Option<Conditions
 fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bool) -> Intake {
     let inference = Inference::of(recording);
     let origin_s = recording.origin_s();
-    let conditions = conditions.unwrap_or_else(|| calibrate::conditions(&recording.metadata));
+    let conditions = conditions.unwrap_or_else(|| settle::conditions(&recording.metadata));
     let mut readings = recording.samples(&inference);
     let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
     let lost = inference.missing();

@@ -8,9 +8,8 @@ use super::twin::data::{Raw, stretches};
 use super::twin::edges;
 use super::twin::noise::Noise;
 use super::twin::trajectory::Nominal;
-use crate::calibrate::Session;
 use crate::recording::{Inference, Recording};
-use crate::settle::Settled;
+use crate::settle::{Session, Settled};
 
 /// Why there is no twin.
 #[derive(Clone, Debug, PartialEq, Eq)]
