@@ -42,10 +42,10 @@ struct Sums {
 #[derive(Clone, Copy, Debug)]
 pub struct Grain {
     last: Option<[Vector3<f32>; 2]>,
-    steps: [f32; 2],
+    steps: [Option<f32>; 2],
     open: Sums,
     rests: Sums,
-    quietest: f32,
+    quietest: Option<f32>,
 }
 
 impl Sums {
@@ -65,9 +65,10 @@ impl Default for Grain {
 }
 
 impl Grain {
-    /// Nothing seen.
+    /// Nothing seen. All of it is zero, as all of a new tape: one other number, an infinity say, would put 48 KB of tape into the
+    /// flash of the board, to be copied from there at start.
     pub const fn new() -> Self {
-        Self { last: None, steps: [f32::INFINITY; 2], open: Sums::NONE, rests: Sums::NONE, quietest: f32::INFINITY }
+        Self { last: None, steps: [None; 2], open: Sums::NONE, rests: Sums::NONE, quietest: None }
     }
 
     /// Takes a reading.
@@ -76,8 +77,8 @@ impl Grain {
         if let Some(last) = self.last.replace(now) {
             for ((step, now), last) in self.steps.iter_mut().zip(&now).zip(&last) {
                 for difference in (now - last).iter().map(|difference| libm::fabsf(*difference)) {
-                    if difference > 0.0 && difference < *step {
-                        *step = difference;
+                    if difference > 0.0 && step.is_none_or(|step| difference < step) {
+                        *step = Some(difference);
                     }
                 }
             }
@@ -93,11 +94,13 @@ impl Grain {
     pub fn end_rest(&mut self, rate_variance: f32) {
         let open = core::mem::replace(&mut self.open, Sums::NONE);
         let rate_variance = rate_variance.max(self.toggling());
-        if SOLID * rate_variance < self.quietest {
+        let before = self.quietest.unwrap_or(f32::INFINITY);
+        if SOLID * rate_variance < before {
             self.rests = Sums::NONE;
         }
-        self.quietest = self.quietest.min(rate_variance);
-        if rate_variance <= SOLID * self.quietest {
+        let quietest = before.min(rate_variance);
+        self.quietest = Some(quietest);
+        if rate_variance <= SOLID * quietest {
             self.rests.add(&open);
         }
     }
@@ -105,16 +108,15 @@ impl Grain {
     /// Half of the variance of a rate that lies between two numbers and is rounded to either as often, Δ²/4, (rad/s)²: whatever the noise,
     /// rests differ by so much according to where their readings lie.
     pub fn toggling(&self) -> f32 {
-        let step = self.steps[0];
-        if step < f32::INFINITY { 0.125 * step * step } else { 0.0 }
+        self.steps[0].map_or(0.0, |step| 0.125 * step * step)
     }
 
     /// Variance of what rounding leaves in the mean of a rest, gyroscope (rad/s)² and accelerometer (m/s²)².
     pub fn offset_variances(&self) -> [f32; 2] {
         core::array::from_fn(|triad| {
-            let step = self.steps[triad];
+            let Some(step) = self.steps[triad] else { return 0.0 };
             let variance = self.rests.variances[triad].min() / (self.rests.blocks * step * step);
-            if step < f32::INFINITY && variance.is_finite() { step * step * offset(noise(variance)) } else { 0.0 }
+            if variance.is_finite() { step * step * offset(noise(variance)) } else { 0.0 }
         })
     }
 }
