@@ -1,8 +1,7 @@
 //! Readings that stand at a level which the motion passed (`gyro_saturation`, `accel_saturation`).
 //!
-//! Statistic: at a channel's extreme M, (1) exact repeats: three or more in a run of 15 ms or more (at 500 Hz three readings at the
-//! peak of a hand's motion are alike now and then). (2) Either *overshoot*: the parabolas through
-//! the 80 ms before the run and after it (backwards), drawn on by half the run or 20 ms, are both past M by more than 8 sigmas
+//! Statistic: at a channel's extreme M, (1) exact repeats: more in a row than noise makes alike, and 15 to 40 ms of them
+//! (`least_run`). (2) Either *overshoot*: the parabolas through the 80 ms before the run and after it (backwards), drawn on by half the run or 20 ms, are both past M by more than 8 sigmas
 //! of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends in the peak of any
 //! motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
 //! all of the next three steps below it by a margin that fair coins reach with e⁻¹¹·⁵ (Hoeffding): a density that falls
@@ -24,8 +23,10 @@ use crate::recording::Basis;
 
 const IMITATED: &[&str] = &["gyro_scale_cubic", "gyro_scale_quadratic", "gyro_scale_asymmetry", "gyro_dead_zone"];
 const IMITATED_ACCEL: &[&str] = &["accel_cubic", "accel_quadratic"];
-/// Shortest flat top, s.
-const LEAST_S: f64 = 0.015;
+/// Shortest flat top, s, whatever the noise; and the longest that noise can make one ask for.
+const LEAST_S: [f64; 2] = [0.015, 0.04];
+/// −ln of how often noise alone may make as long a run of equal readings at a peak: 1e-3, beside the overshoot's own chance.
+const LN_EQUAL: f64 = 7.0;
 /// What the parabola is fitted to, s; it is drawn on for a quarter of that.
 const FIT_S: f64 = 0.08;
 
@@ -118,7 +119,7 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let runs: Vec<Range<usize>> =
         samples.chunk_by(|a, b| a + 1 == *b).map(|run| run[0]..run[run.len() - 1] + 1).collect();
     let fresh = |run: &Range<usize>| run.clone().filter(|i| stale.binary_search(i).is_err()).count();
-    let least = view.count(LEAST_S).max(3);
+    let least = least_run(view, noise / step);
     let long: Vec<&Range<usize>> = runs.iter().filter(|run| fresh(run) >= least).collect();
     let margin = 8.0 * noise + 2.0 * step;
     let overshoots = long.iter().filter(|run| overshoots(view, values, run, sign, top + margin)).count();
@@ -129,6 +130,16 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let rail = if at_rail(view, channel, top) && samples.len() >= 2 { 15.0 } else { 0.0 };
     let evidence = 15.0 * overshoots as f64 - ln_p + rail;
     (overshoots > 0 || ln_p < LN_ALARM || rail > 0.0).then_some(Flat { channel, level: sign * top, samples, evidence })
+}
+
+/// Readings in a row that are no accident. Two of noise σ are equal with p = Δ/(2√π σ), so that n in a row have pⁿ⁻¹; a hand's
+/// ring after a put-down passes both parabolas, and three equal readings at its peak came once in 280 clean sessions.
+fn least_run(view: &View, noise_steps: f64) -> usize {
+    let equal = (0.5 / (std::f64::consts::PI.sqrt() * noise_steps)).min(1.0);
+    let [least, most] = LEAST_S.map(|seconds| view.count(seconds).max(3));
+    let asked = 1.0 + LN_EQUAL / -equal.ln().min(-f64::MIN_POSITIVE);
+    // Quieter than a step, readings are alike of themselves, and curvature alone makes a peak: the parabolas decide.
+    if equal > 0.9 { least } else { (asked.ceil() as usize).clamp(least, most) }
 }
 
 /// Two readings at the end of a known range are clipped by definition.
