@@ -105,8 +105,15 @@ pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
 /// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
 /// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
 pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<String> {
-    const FAMILIES: [&str; 6] =
-        ["time", "slow oscillation", "heading", "the face before", "memory of motion", "memory of force"];
+    const FAMILIES: [&str; 7] = [
+        "time",
+        "slow oscillation",
+        "heading",
+        "the face before",
+        "the side before",
+        "memory of motion",
+        "memory of force",
+    ];
     let mut tied: Vec<_> = instead
         .ranking
         .iter()

@@ -135,7 +135,7 @@ fn aliases(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<String> {
     let accepted = &bench.accepted[k];
     let Some(placed) = bench.candidates[accepted.candidate].variants.get(accepted.variant) else { return Vec::new() };
     let columns: Vec<usize> = placed.columns.clone().collect();
-    let fit = ledger.fit(&bench.accepted_terms(None));
+    let fit = ledger.fit(&bench.accepted_terms(&[]));
     let total = total(bench, &fit, k);
     let mut aliases = Vec::new();
     for (index, candidate) in bench.candidates.iter().enumerate() {
@@ -210,7 +210,7 @@ pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
     let nominal = mean(before.values.as_slice(), &|_| true);
     let mut held_out = 0.0;
     for late in [false, true] {
-        let fit = Ledger::new(after, |at| at.late == late).fit(&bench.accepted_terms(None));
+        let fit = Ledger::new(after, |at| at.late == late).fit(&bench.accepted_terms(&[]));
         held_out += 0.5 * mean(&shares::residual(bench, after, &fit, None), &|i| after.at[i].late != late);
     }
     let per_channel = CHANNELS

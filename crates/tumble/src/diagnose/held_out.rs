@@ -15,7 +15,7 @@ const LEAST_HALF: f64 = 0.05;
 pub fn held_out(bench: &Bench, rows: &Rows, k: usize) -> Option<HeldOut> {
     let first: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let count = parameters(bench, k);
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let columns: Vec<usize> = terms[first..first + count].iter().map(|term| term.column).collect();
     let halves = [false, true].map(|late| Ledger::new(rows, |at| at.late == late));
     let all = Ledger::new(rows, |_| true).fit(&terms);

@@ -2,7 +2,7 @@
 
 use super::exhibits;
 use super::findings::{Finding, TIE};
-use super::search::bench::Bench;
+use super::search::bench::{Accepted, Bench};
 use super::search::select::Selection;
 use super::search::unknown::{self, Leftover};
 use super::search::wandering;
@@ -88,6 +88,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.named.push(finding);
         }
     }
+    one_for_all(bench, selection, &mut judged);
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
     if judged.unknown {
         let named = std::mem::take(&mut judged.named);
@@ -96,6 +97,29 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         judged.named = named;
     }
     judged
+}
+
+/// Several names may stand for one thing that has none, each better in its place than a shape that leaves the others where they
+/// are: the shapes once more in the place of them all.
+fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
+    let named = |accepted: &Accepted| {
+        let candidate = &bench.candidates[accepted.candidate];
+        candidate.walk.is_none() && judged.named.iter().any(|finding| finding.found.id == candidate.effect.card.id)
+    };
+    let shifts: Vec<usize> = (0..bench.accepted.len()).filter(|k| named(&bench.accepted[*k])).collect();
+    if shifts.len() < 2 {
+        return;
+    }
+    let shape = unknown::weigh(bench, &shifts);
+    let clear = selection.evidence - (shape.base + shape.evidence);
+    if clear < -TIE {
+        judged.unknown = true;
+        judged.p_value = judged.p_value.min(clear.exp());
+        judged.better.extend(exhibits::correlates(bench, &shape));
+        let (fallen, named) = std::mem::take(&mut judged.named).into_iter().partition(|finding| !finding.is_walk);
+        judged.named = named;
+        judged.demoted.extend::<Vec<Finding>>(fallen);
+    }
 }
 
 /// The best that shapes without a name do in the place of an accepted effect, at its noise and at the null's.
@@ -107,13 +131,13 @@ fn shape_instead(bench: &mut Bench, selection: &Selection, k: usize) -> Leftover
         [selection.null_noise, noise].into_iter().take(if walks || noise == selection.null_noise { 1 } else { 2 })
     {
         bench.twin.noise = noise;
-        let shape = unknown::weigh(bench, Some(k));
+        let shape = unknown::weigh(bench, &[k]);
         if best.as_ref().is_none_or(|best| shape.base + shape.evidence > best.base + best.evidence) {
             best = Some(shape);
         }
     }
     bench.twin.noise = noise;
-    best.unwrap_or_else(|| unknown::weigh(bench, Some(k)))
+    best.unwrap_or_else(|| unknown::weigh(bench, &[k]))
 }
 
 /// A walk that is none.

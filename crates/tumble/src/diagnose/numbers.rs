@@ -58,7 +58,7 @@ pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Nois
 /// what is stated is the whole of them, and its sigma that of the whole, not of how the two share it (1.2 cm, 8.7 deg/h).
 fn own_fit(bench: &mut Bench, k: usize) -> Fit {
     let id = bench.candidates[bench.accepted[k].candidate].effect.card.id;
-    let terms = freed(bench.accepted_terms(None));
+    let terms = freed(bench.accepted_terms(&[]));
     let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
     bench.twin.leave_to_effect(id, true);
     let rows = bench.rows_of(&columns);
@@ -70,7 +70,7 @@ fn own_fit(bench: &mut Bench, k: usize) -> Fit {
 /// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. Classes of rows scatter beyond it only
 /// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
 pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
-    let terms = freed(bench.accepted_terms(None));
+    let terms = freed(bench.accepted_terms(&[]));
     let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
     let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
     let with = |noise: Noise, factor: f64| {

@@ -64,7 +64,7 @@ fn is_walk(bench: &Bench, gyro: bool) -> bool {
 
 /// Mean of a variance by the evidence of the noise that it makes; none where the rows break down.
 fn mean(bench: &mut Bench, variances: impl Iterator<Item = f64>, noise: impl Fn(f64) -> Noise) -> Option<f64> {
-    let terms = freed(bench.accepted_terms(None));
+    let terms = freed(bench.accepted_terms(&[]));
     let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
     let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
     let weighed: Vec<(f64, f64)> = variances

@@ -6,7 +6,7 @@ use tumble_core::procedure::BoxFaces;
 
 use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
 use super::exhibits::{self, Exhibits};
-use super::findings;
+use super::findings::{self, Finding};
 use super::gates::Gated;
 use super::intake::{Intake, intake, intake_without_moves};
 use super::judge::{Judged, judge};
@@ -77,7 +77,7 @@ fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut 
         );
     }
     progress("what is left", 0.85);
-    let leftover = unknown::weigh(&mut bench, None);
+    let leftover = unknown::weigh(&mut bench, &[]);
     let found = findings::findings(&mut bench, &selection, origin_s);
     let mut judged = judge(&mut bench, &selection, &leftover, found);
     if gated.found.iter().any(|found| !HARMLESS.contains(&found.id.as_str())) {
@@ -100,7 +100,14 @@ fn assemble(
 ) -> Diagnosis {
     let limits = limits::one_each(limits::limits(bench, selection).into_iter().chain(gated.limits));
     let mut effects = gated.found;
-    effects.extend(judged.named.into_iter().map(|finding| finding.found));
+    for Finding { found, .. } in judged.named {
+        // What a gate and the twin both found is one effect: the stronger evidence stands.
+        match effects.iter_mut().find(|effect| effect.id == found.id) {
+            Some(same) if same.evidence < found.evidence => *same = found,
+            Some(_) => {}
+            None => effects.push(found),
+        }
+    }
     effects.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let unknown = judged.unknown.then(|| {
         let mut correlates = judged.better;

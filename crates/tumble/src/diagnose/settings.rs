@@ -43,7 +43,7 @@ struct Tried {
 /// The variants' settings with their evidence.
 fn coarse(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<(f64, f64)> {
     let accepted = &bench.accepted[k];
-    let mut others = bench.accepted_terms(Some(k));
+    let mut others = bench.accepted_terms(&[k]);
     others.extend(bench.put_back(accepted));
     let variants = &bench.candidates[accepted.candidate].variants;
     let weigh = |variant: usize| {
@@ -106,7 +106,7 @@ fn try_all(bench: &mut Bench, k: usize, at: fn(f64) -> Variant, low: f64, high: 
     let settings: Vec<f64> = (0..TRIED).map(|i| low + (high - low) * i as f64 / (TRIED - 1) as f64).collect();
     let accepted = bench.accepted[k].clone();
     // What was taken out of the samples at the coarse setting is put back; what the others have may change.
-    let mut others = freed(bench.accepted_terms(Some(k)));
+    let mut others = freed(bench.accepted_terms(&[k]));
     others.extend(bench.put_back(&accepted));
     let own = freed(bench.terms(accepted.candidate, accepted.variant, accepted.widening, &[]));
     let known = bench.columns.len();

@@ -154,9 +154,9 @@ impl Bench {
         placed.columns.clone().enumerate().map(term).collect()
     }
 
-    /// Terms of all that is accepted, but for one.
-    pub fn accepted_terms(&self, but: Option<usize>) -> Vec<Term> {
-        let chosen = self.accepted.iter().enumerate().filter(|(k, _)| Some(*k) != but);
+    /// Terms of all that is accepted, but for some.
+    pub fn accepted_terms(&self, but: &[usize]) -> Vec<Term> {
+        let chosen = self.accepted.iter().enumerate().filter(|(k, _)| !but.contains(k));
         chosen
             .filter(|(_, accepted)| self.candidates[accepted.candidate].walk.is_none())
             .flat_map(|(_, accepted)| {
@@ -205,7 +205,7 @@ impl Bench {
     /// Takes the accepted effects' best numbers out of the samples and fits the nominal anew: the non-linear refit.
     pub fn refit(&mut self) {
         for _ in 0..2 {
-            let terms = self.accepted_terms(None);
+            let terms = self.accepted_terms(&[]);
             let fit = self.fit_alone(self.twin.noise, &terms);
             let mut next = 0;
             for accepted in &mut self.accepted {

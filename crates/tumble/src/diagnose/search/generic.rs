@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 
+use super::before;
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::influence::{Influence, Push};
-use crate::diagnose::twin::rows::CHANNELS;
 use crate::diagnose::twin::trajectory::Moment;
 
 /// Shapes of one kind on one triad.
@@ -52,7 +52,8 @@ pub fn families(twin: &Twin) -> Vec<Family> {
             families.push(family(name, gyro, || shapes(end_s)));
         }
     }
-    families.push(previous_face(twin));
+    families.push(before::previous_face(twin));
+    families.extend([true, false].map(|gyro| before::last_side(twin, gyro)));
     families.extend([true, false].map(|gyro| memory_of_motion(twin, gyro)));
     families.extend([true, false].map(|gyro| memory_of_force(twin, gyro)));
     families
@@ -228,34 +229,4 @@ fn north(moment: &Moment) -> Vector3<f64> {
 
 fn east(moment: &Moment) -> Vector3<f64> {
     moment.attitude.inverse_transform_vector(&Vector3::x())
-}
-
-/// Readings that remember how the sensor lay before.
-fn previous_face(twin: &Twin) -> Family {
-    let mut before = Vec::new();
-    let (mut last, mut current) = (Vector3::zeros(), Vector3::zeros());
-    for stretch in &twin.stretches {
-        if stretch.is_rest() {
-            let force = twin.trajectory.moments[stretch.samples.start].force / G;
-            if (force - current).norm() > 0.3 {
-                last = current;
-                current = force;
-            }
-        }
-        before.resize(stretch.number + 1, last);
-    }
-    let before = std::sync::Arc::new(before);
-    let (mut members, mut influences) = (Vec::new(), Vec::new());
-    for (channel, name) in CHANNELS.iter().enumerate() {
-        for (axis, letter) in AXES.iter().enumerate() {
-            let before = before.clone();
-            let unit = if channel < 3 { DPS } else { 1e-3 * G };
-            members.push((channel, format!("previous f_{letter} on {name}")));
-            influences.push(reading(move |moment| {
-                let value = before.get(moment.stretch).map_or(0.0, |force: &Vector3<f64>| force[axis]);
-                Push::channel(channel, unit * value)
-            }));
-        }
-    }
-    Family { name: "the face before".into(), gyro: false, members, influences }
 }

@@ -1,5 +1,6 @@
 //! The search: every candidate against one nominal fit, with thresholds that chance on this very recording sets.
 
+mod before;
 pub mod bench;
 pub mod generic;
 pub mod ledger;

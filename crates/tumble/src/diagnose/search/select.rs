@@ -47,7 +47,7 @@ pub struct Selection {
 
 /// The null's noise: how much the biases wander, as far as healthy ones do, by evidence.
 pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let given = bench.given;
     let mut best = (given, f64::NEG_INFINITY);
     for noise in [given, given.trusting(bench.twin.stops)] {
@@ -190,7 +190,7 @@ fn accept(bench: &mut Bench, best: &Score, threshold: f64) -> bool {
 fn is_meaningful(bench: &mut Bench) -> bool {
     let Some(last) = bench.accepted.last().cloned() else { return true };
     let Some(placed) = bench.candidates[last.candidate].variants.get(last.variant).cloned() else { return true };
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let fit = bench.fit_alone(bench.twin.noise, &terms);
     let first = terms.len() - placed.parameters.len();
     placed.parameters.iter().enumerate().all(|(i, parameter)| {
@@ -219,7 +219,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
     let removed = bench.accepted.remove(k);
     let noise = bench.twin.noise;
     // Its share is still taken out of the samples: its columns put it back at exactly that size.
-    let mut terms = bench.accepted_terms(None);
+    let mut terms = bench.accepted_terms(&[]);
     terms.extend(bench.put_back(&removed));
     let mut best = f64::NEG_INFINITY;
     for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
@@ -236,7 +236,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
 /// Gains of all candidates that are not accepted yet, best first.
 pub fn score(bench: &mut Bench) -> Vec<Score> {
     let (settled, whole) = settle_walks(bench);
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let least = with_walks(&bench.given.trusting(bench.twin.stops), HEALTHY[0], HEALTHY[0]);
     let least = with_accepted_walks(bench, least);
     let mut noises = vec![settled];
@@ -277,7 +277,7 @@ fn is_accepted(bench: &Bench, candidate: usize) -> bool {
 
 fn score_walk(bench: &mut Bench, candidate: usize, settled: Noise, whole: f64) -> Score {
     let gyro = bench.candidates[candidate].walk.is_some_and(|walk| walk.0);
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let level = |level: f64| {
         if gyro {
             Noise { bias_walk: level * BIAS_WALK_FLOOR, ..settled }

@@ -20,7 +20,7 @@ pub fn freed(terms: Vec<Term>) -> Vec<Term> {
 
 /// Rows less what the accepted effects explain, but for one.
 pub fn residual(bench: &Bench, rows: &Rows, fit: &Fit, but: Option<usize>) -> Vec<f64> {
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let mut of = Vec::new();
     (0..bench.accepted.len()).for_each(|k| of.extend(std::iter::repeat_n(k, parameters(bench, k))));
     (0..rows.at.len())
@@ -38,6 +38,6 @@ pub fn residual(bench: &Bench, rows: &Rows, fit: &Fit, but: Option<usize>) -> Ve
 
 /// Rows less what all accepted effects explain.
 pub fn left(bench: &Bench, rows: &Rows) -> Vec<f64> {
-    let fit = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(None));
+    let fit = Ledger::new(rows, |_| true).fit(&bench.accepted_terms(&[]));
     residual(bench, rows, &fit, None)
 }

@@ -98,10 +98,10 @@ fn blocks(bench: &Bench) -> Vec<Block> {
     blocks
 }
 
-/// Weighs all blocks beside what is accepted; with `instead_of`, in the place of that one, aliases of it left out.
-pub fn weigh(bench: &mut Bench, instead_of: Option<usize>) -> Leftover {
+/// Weighs all blocks beside what is accepted; in the place of those in `instead_of`, aliases of them left out.
+pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
     let accepted = bench.accepted_terms(instead_of);
-    let replaced = instead_of.map(|k| bench.put_back(&bench.accepted[k])).unwrap_or_default();
+    let replaced: Vec<Term> = instead_of.iter().flat_map(|&k| bench.put_back(&bench.accepted[k])).collect();
     let own = replaced.clone();
     let first = bench.candidate_columns();
     let mut columns: Vec<usize> = accepted.iter().chain(&replaced).map(|term| term.column).collect();

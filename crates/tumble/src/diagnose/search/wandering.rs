@@ -26,7 +26,7 @@ const IN_MOTION: [f64; 6] = [1.0 / 64.0, 1.0 / 8.0, 8.0, 64.0, 512.0, 4096.0];
 /// ln of the mean Bayes factor of densities that depend on motion, against the walk that was accepted.
 fn depends_on_motion(bench: &mut Bench, gyro: bool) -> f64 {
     let found = bench.twin.noise;
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let at = |rest: f64, motion: f64| {
         let mut noise = Noise { walk_in_motion: [1.0; 2], ..found };
         noise.walk_in_motion[usize::from(!gyro)] = motion;
@@ -82,7 +82,7 @@ const DENSITIES: [f64; 4] = [1.0, 0.7, 0.5, 0.3];
 /// With all that is accepted.
 fn innovations(bench: &mut Bench, gyro: bool) -> Left {
     let found = bench.twin.noise;
-    let terms = bench.accepted_terms(None);
+    let terms = bench.accepted_terms(&[]);
     let at = |density: f64| match gyro {
         true => Noise { rate_density: found.rate_density * density, ..found },
         false => Noise { force_density: found.force_density * density, ..found },
