@@ -102,6 +102,9 @@ pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
     leftover.ranking.iter().take(8).map(|(family, members, gain)| (shape(bench, *family, members), *gain)).collect()
 }
 
+/// A block of shapes: its family, its members, its gain.
+type Block = (usize, Vec<usize>, f64);
+
 /// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
 /// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
 pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<String> {
@@ -114,14 +117,13 @@ pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<St
         "memory of motion",
         "memory of force",
     ];
-    let mut tied: Vec<_> = instead
-        .ranking
-        .iter()
-        .chain(&instead.aliases)
-        .filter(|(family, _, gain)| {
-            FAMILIES.contains(&bench.families[*family].0.name.as_str()) && instead.base + gain > evidence - TIE
-        })
-        .collect();
+    // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference.
+    let own = instead.ranking.iter().map(|block| (block, TIE));
+    let aliases = instead.aliases.iter().map(|block| (block, 2.0 * TIE));
+    let is_tied = |((family, _, gain), gap): &(&Block, f64)| {
+        FAMILIES.contains(&bench.families[*family].0.name.as_str()) && instead.base + gain > evidence - gap
+    };
+    let mut tied: Vec<&Block> = own.chain(aliases).filter(is_tied).map(|(block, _)| block).collect();
     tied.sort_by(|a, b| b.2.total_cmp(&a.2));
     tied.into_iter().take(3).map(|(family, members, _)| shape(bench, *family, members)).collect()
 }
