@@ -5,7 +5,7 @@ use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
 use super::search::shares;
-use super::search::unknown::{Leftover, shared};
+use super::search::unknown::{ALIAS, Leftover, shared};
 use super::twin::data::Deed;
 use super::twin::rows::Address;
 
@@ -117,9 +117,11 @@ pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<St
         "memory of motion",
         "memory of force",
     ];
-    // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference.
+    // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference; and
+    // the twentieth of the whole by which an alias may fall short of being the same.
+    let whole = (evidence - instead.base).max(0.0);
     let own = instead.ranking.iter().map(|block| (block, TIE));
-    let aliases = instead.aliases.iter().map(|block| (block, 2.0 * TIE));
+    let aliases = instead.aliases.iter().map(|block| (block, 2.0 * TIE + (1.0 - ALIAS) * whole));
     let is_tied = |((family, _, gain), gap): &(&Block, f64)| {
         FAMILIES.contains(&bench.families[*family].0.name.as_str()) && instead.base + gain > evidence - gap
     };
