@@ -5,7 +5,7 @@ use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
 use super::search::shares;
-use super::search::unknown::{ALIAS, Leftover, shared};
+use super::search::unknown::{ALIAS, Block, Leftover, shared};
 use super::twin::data::Deed;
 use super::twin::rows::Address;
 
@@ -99,11 +99,8 @@ pub fn exhibits(
 
 /// What the leftover follows, in words.
 pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
-    leftover.ranking.iter().take(8).map(|(family, members, gain)| (shape(bench, *family, members), *gain)).collect()
+    leftover.ranking.iter().take(8).map(|(block, gain)| (shape(bench, block), *gain)).collect()
 }
-
-/// A block of shapes: its family, its members, its gain.
-type Block = (usize, Vec<usize>, f64);
 
 /// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
 /// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
@@ -120,20 +117,20 @@ pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<St
     // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference; and
     // the twentieth of the whole by which an alias may fall short of being the same.
     let whole = (evidence - instead.base).max(0.0);
-    let own = instead.ranking.iter().map(|block| (block, TIE));
-    let aliases = instead.aliases.iter().map(|block| (block, 2.0 * TIE + (1.0 - ALIAS) * whole));
-    let is_tied = |((family, _, gain), gap): &(&Block, f64)| {
-        FAMILIES.contains(&bench.families[*family].0.name.as_str()) && instead.base + gain > evidence - gap
+    let own = instead.ranking.iter().map(|ranked| (ranked, TIE));
+    let aliases = instead.aliases.iter().map(|ranked| (ranked, 2.0 * TIE + (1.0 - ALIAS) * whole));
+    let is_tied = |((block, gain), gap): &(&(Block, f64), f64)| {
+        FAMILIES.contains(&bench.families[block.family].0.name.as_str()) && instead.base + gain > evidence - gap
     };
-    let mut tied: Vec<&Block> = own.chain(aliases).filter(is_tied).map(|(block, _)| block).collect();
-    tied.sort_by(|a, b| b.2.total_cmp(&a.2));
-    tied.into_iter().take(3).map(|(family, members, _)| shape(bench, *family, members)).collect()
+    let mut tied: Vec<&(Block, f64)> = own.chain(aliases).filter(is_tied).map(|(ranked, _)| ranked).collect();
+    tied.sort_by(|a, b| b.1.total_cmp(&a.1));
+    tied.into_iter().take(3).map(|(block, _)| shape(bench, block)).collect()
 }
 
 /// A block in words.
-fn shape(bench: &Bench, family: usize, members: &[usize]) -> String {
-    let family = &bench.families[family].0;
-    let mut shapes: Vec<&str> = members.iter().map(|member| family.members[*member].1.as_str()).collect();
+fn shape(bench: &Bench, block: &Block) -> String {
+    let family = &bench.families[block.family].0;
+    let mut shapes: Vec<&str> = block.members.iter().map(|member| family.members[*member].1.as_str()).collect();
     let mut seen = std::collections::BTreeSet::new();
     shapes.retain(|shape| seen.insert(*shape));
     shapes.truncate(3);

@@ -32,6 +32,13 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Shapes without a name explain better than a name, whose odds against them are e^`clear`.
+    fn better_without_name(&mut self, clear: f64, shapes: Vec<(String, f64)>) {
+        self.unknown = true;
+        self.p_value = self.p_value.min(clear.exp());
+        self.better.extend(shapes);
+    }
+
     /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
     /// odds that no trace would reach; a bias that wanders is none.
     pub fn beside_gates(&mut self) {
@@ -77,9 +84,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
         if clear < -TIE {
-            judged.unknown = true;
-            judged.p_value = judged.p_value.min((clear).exp());
-            judged.better.extend(exhibits::correlates(bench, &shape));
+            judged.better_without_name(clear, exhibits::correlates(bench, &shape));
             judged.demoted.push(finding);
         } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
             judged.demoted.push(finding);
@@ -113,9 +118,7 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     let shape = unknown::weigh(bench, &shifts);
     let clear = selection.evidence - (shape.base + shape.evidence);
     if clear < -TIE {
-        judged.unknown = true;
-        judged.p_value = judged.p_value.min(clear.exp());
-        judged.better.extend(exhibits::correlates(bench, &shape));
+        judged.better_without_name(clear, exhibits::correlates(bench, &shape));
         let (fallen, named) = std::mem::take(&mut judged.named).into_iter().partition(|finding| !finding.is_walk);
         judged.named = named;
         judged.demoted.extend::<Vec<Finding>>(fallen);
@@ -165,9 +168,7 @@ fn refute_walks(bench: &mut Bench, found: &[Finding], judged: &mut Judged) -> Ve
         };
         let Some((why, gain)) = wandering::refute(bench, gyro) else { continue };
         let (triad, name) = if gyro { ("gyro_", "gyroscope") } else { ("accel_", "accelerometer") };
-        judged.unknown = true;
-        judged.p_value = judged.p_value.min((-gain).exp());
-        judged.better.push((format!("{why} ({name})"), gain));
+        judged.better_without_name(-gain, vec![(format!("{why} ({name})"), gain)]);
         refuted.push(Refuted { id: finding.found.id.clone(), triad, evidence: finding.found.evidence });
     }
     refuted

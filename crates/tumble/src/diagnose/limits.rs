@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::diagnosis::Limit;
+use super::gates::chance::shift_seen;
 use super::search::bench::{Bench, HEALTHY, with_walks};
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
@@ -68,7 +69,7 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
         let occam: f64 = factor.l_dirty().diagonal().iter().map(|v| v.ln()).sum();
         let price = selection.threshold + occam + (candidate.variants.len() as f64).ln();
         for (i, parameter) in placed.parameters.iter().enumerate().filter(|(i, _)| information[(*i, *i)] > 0.0) {
-            let sigmas = noncentrality(2.0 * price, columns.len() as f64).sqrt();
+            let sigmas = shift_seen(2.0 * price, columns.len() as f64).sqrt();
             limits.push((sigmas / information[(i, i)].sqrt(), parameter.width, parameter.unit));
         }
     }
@@ -85,16 +86,9 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
     Limit { id, limit, unit: unit.into(), testable, why }
 }
 
-/// λ of a non-central χ² of `dof` degrees that exceeds `value` in 95 of 100 cases. Its mean is `dof + λ`, its variance
-/// `2 dof + 4 λ`, and it is taken for normal: with `x = √(λ + dof/2)`, `x² − 2·1.645 x + dof/2 = value`.
-fn noncentrality(value: f64, dof: f64) -> f64 {
-    let x = 1.645 + (1.645f64.powi(2) + value - 0.5 * dof).max(0.0).sqrt();
-    (x * x - 0.5 * dof).max(0.0)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{noncentrality, one_each};
+    use super::one_each;
     use crate::diagnose::diagnosis::Limit;
 
     #[test]
@@ -110,13 +104,5 @@ mod tests {
         assert_eq!((each.len(), each[0].limit), (1, 0.6));
         let each = one_each([limit(0.0, false), limit(22.6, true)].into_iter());
         assert_eq!((each.len(), each[0].limit), (1, 22.6));
-    }
-
-    /// One degree: `(z + √λ)²` is below v where z is below `√v − √λ`, in 5 of 100 cases at −1.645.
-    #[test]
-    fn a_signal_in_one_direction() {
-        let exact = (20.0f64.sqrt() + 1.645).powi(2);
-        // The normal distribution is 7 % high, 3 % in size.
-        assert!((noncentrality(20.0, 1.0) / exact - 1.0).abs() < 0.08);
     }
 }

@@ -11,6 +11,7 @@ pub mod intake;
 mod judge;
 mod limits;
 mod numbers;
+mod outcome;
 mod posterior;
 pub mod prepare;
 pub mod promise;
@@ -22,4 +23,5 @@ mod settings;
 pub mod transfer;
 pub mod twin;
 
-pub use run::{Options, Outcome, Progress, diagnose};
+pub use outcome::Outcome;
+pub use run::{Options, Progress, diagnose};

@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::catalogue::Parameter;
 use super::diagnosis::Value;
 use super::search::bench::Bench;
-use super::search::ledger::{Fit, Ledger, Term};
+use super::search::ledger::{Fit, Ledger};
 use super::search::shares::{freed, parameters};
 use super::settings;
 use super::twin::noise::Noise;
@@ -59,20 +59,16 @@ pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Nois
 fn own_fit(bench: &mut Bench, k: usize) -> Fit {
     let id = bench.candidates[bench.accepted[k].candidate].effect.card.id;
     let terms = freed(bench.accepted_terms(&[]));
-    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
     bench.twin.leave_to_effect(id, true);
-    let rows = bench.rows_of(&columns);
+    let (ledger, terms) = bench.ledger_of(&terms);
     bench.twin.leave_to_effect(id, false);
-    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
-    Ledger::new(&rows, |_| true).believing(Class::Closure).fit(&local)
+    ledger.believing(Class::Closure).fit(&terms)
 }
 
 /// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. Classes of rows scatter beyond it only
 /// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
 pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
-    let terms = freed(bench.accepted_terms(&[]));
-    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
-    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+    let free = freed(bench.accepted_terms(&[]));
     let with = |noise: Noise, factor: f64| {
         if gyro {
             Noise { bias_walk: noise.bias_walk * factor, ..noise }
@@ -82,12 +78,12 @@ pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, uni
     };
     let in_force = bench.twin.noise;
     bench.twin.noise = noise;
-    let ledger = Ledger::new(&bench.rows_of(&columns), |_| true).believing(Class::Closure);
-    let scales = ledger.certain(&ledger.fit(&local));
+    let (ledger, terms) = bench.ledger_of(&free);
+    let ledger = ledger.believing(Class::Closure);
+    let scales = ledger.certain(&ledger.fit(&terms));
     let mut evidence = |log: f64| {
         bench.twin.noise = with(noise, log.exp());
-        let rows = bench.rows_of(&columns);
-        Ledger::new(&rows, |_| true).at(&scales).fit(&local).evidence
+        bench.ledger_of(&free).0.at(&scales).fit(&terms).evidence
     };
     // Newton's method on a parabola through three points.
     let (mut at, mut sigma_log) = (0.0, 1.0);

@@ -11,7 +11,7 @@
 use tumble_core::setup::TurnStops;
 
 use super::search::bench::{Bench, HEALTHY};
-use super::search::ledger::{Ledger, Term};
+use super::search::ledger::posterior;
 use super::search::shares::freed;
 use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise, PIVOT_SIGMA_M};
 use super::twin::rows::Class;
@@ -65,36 +65,12 @@ fn is_walk(bench: &Bench, gyro: bool) -> bool {
 /// Mean of a variance by the evidence of the noise that it makes; none where the rows break down.
 fn mean(bench: &mut Bench, variances: impl Iterator<Item = f64>, noise: impl Fn(f64) -> Noise) -> Option<f64> {
     let terms = freed(bench.accepted_terms(&[]));
-    let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
-    let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
-    let weighed: Vec<(f64, f64)> = variances
-        .map(|variance| {
-            bench.twin.noise = noise(variance);
-            let rows = bench.rows_of(&columns);
-            (variance, Ledger::new(&rows, |_| true).believing(Class::Closure).fit(&local).evidence)
-        })
-        .collect();
-    by_evidence(&weighed)
-}
-
-fn by_evidence(weighed: &[(f64, f64)]) -> Option<f64> {
-    let most = weighed.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
-    if !most.is_finite() {
-        return None;
-    }
-    let share = |evidence: f64| (evidence - most).exp();
-    let sum: f64 = weighed.iter().map(|one| share(one.1)).sum();
-    Some(weighed.iter().map(|one| one.0 * share(one.1)).sum::<f64>() / sum)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::by_evidence;
-
-    #[test]
-    fn a_mean_by_evidence() {
-        let found = by_evidence(&[(1.0, -500.0), (3.0, -500.0), (100.0, -600.0)]).expect("it is finite");
-        assert!((found - 2.0).abs() < 1e-12);
-        assert_eq!(by_evidence(&[(1.0, f64::NEG_INFINITY)]), None);
-    }
+    let variances: Vec<f64> = variances.collect();
+    let evidence = variances.iter().map(|variance| {
+        bench.twin.noise = noise(*variance);
+        let (ledger, terms) = bench.ledger_of(&terms);
+        ledger.believing(Class::Closure).fit(&terms).evidence
+    });
+    let shares = posterior(evidence)?;
+    Some(variances.iter().zip(shares).map(|(variance, share)| variance * share).sum())
 }

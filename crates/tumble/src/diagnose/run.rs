@@ -5,12 +5,13 @@ use tumble_core::estimate::Conditions;
 use tumble_core::procedure::BoxFaces;
 
 use super::diagnosis::{Diagnosis, FitReport, Unknown, Verdict};
-use super::exhibits::{self, Exhibits};
+use super::exhibits;
 use super::findings::{self, Finding};
 use super::gates::Gated;
 use super::intake::{Intake, intake, intake_without_moves};
 use super::judge::{Judged, judge};
 use super::limits;
+use super::outcome::Outcome;
 use super::search::bench::Bench;
 use super::search::select::{self, Selection};
 use super::search::unknown::{self, Leftover};
@@ -35,14 +36,6 @@ pub struct Options {
     pub seed: u64,
     /// Table and box, instead of what the recording states.
     pub conditions: Option<Conditions>,
-}
-
-/// The answer and its pictures.
-pub struct Outcome {
-    /// The contract's object.
-    pub diagnosis: Diagnosis,
-    /// None where no physics could be fitted.
-    pub exhibits: Option<Exhibits>,
 }
 
 /// Hears what is being done, and which share of all is done.

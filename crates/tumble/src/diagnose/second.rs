@@ -10,7 +10,7 @@
 
 use super::diagnosis::{Diagnosis, Verdict};
 use super::gates;
-use super::run::Outcome;
+use super::outcome::Outcome;
 use crate::recording::Recording;
 
 /// Twice the bandwidth that a sensor has at 200 Hz (MPU-9250, CONFIG = 3): what is sampled faster does not fold.

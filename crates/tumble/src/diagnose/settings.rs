@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Variant, at_any_setting};
 use super::search::bench::Bench;
-use super::search::ledger::{Ledger, Term};
+use super::search::ledger::{Ledger, Term, posterior};
 use super::search::shares::freed;
 use super::twin::column::Column;
 use super::twin::rows::Class;
@@ -62,11 +62,10 @@ fn coarse(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<(f64, f64)> {
 /// Spread of a setting over the variants, each by its evidence; between two neighbours nothing is known.
 pub fn sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
     let coarse = coarse(bench, ledger, k);
-    let most = coarse.iter().map(|one| one.1).fold(f64::NEG_INFINITY, f64::max);
-    let share = |evidence: f64| (evidence - most).exp();
-    let sum: f64 = coarse.iter().map(|one| share(one.1)).sum();
-    let mean: f64 = coarse.iter().map(|one| one.0 * share(one.1)).sum::<f64>() / sum;
-    let spread = coarse.iter().map(|one| (one.0 - mean).powi(2) * share(one.1)).sum::<f64>() / sum;
+    let Some(shares) = posterior(coarse.iter().map(|one| one.1)) else { return f64::NAN };
+    let each = || coarse.iter().map(|one| one.0).zip(&shares);
+    let mean: f64 = each().map(|(setting, share)| setting * share).sum();
+    let spread: f64 = each().map(|(setting, share)| (setting - mean).powi(2) * share).sum();
     let accepted = &bench.accepted[k];
     let at = bench.candidates[accepted.candidate].variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
     let around = coarse.windows(2).filter(|pair| pair[0].0 <= at && at <= pair[1].0);
@@ -88,7 +87,7 @@ pub fn settle(bench: &mut Bench, ledger: &Ledger, k: usize) -> Option<Settled> {
         }
         (low, high) = (first.max(low), last.min(high));
     }
-    Some(mixture(&tried))
+    mixture(&tried)
 }
 
 /// From the neighbour before the first setting that is not excluded to the one after the last; beyond a grid's end, half as much
@@ -111,31 +110,28 @@ fn try_all(bench: &mut Bench, k: usize, at: fn(f64) -> Variant, low: f64, high: 
     let own = freed(bench.terms(accepted.candidate, accepted.variant, accepted.widening, &[]));
     let known = bench.columns.len();
     bench.columns.extend(settings.iter().flat_map(|setting| at(*setting).influences).map(Column::from));
-    let mut columns: Vec<usize> = others.iter().map(|term| term.column).collect();
-    columns.extend(known..bench.columns.len());
-    let rows = bench.rows_of(&columns);
+    let first = others.len();
+    // Each setting has the same terms; its columns come after those of the one before.
+    let each = own.iter().cycle().zip(known..bench.columns.len()).map(|(term, column)| Term { column, ..*term });
+    let all: Vec<Term> = others.into_iter().chain(each).collect();
+    let (ledger, all) = bench.ledger_of(&all);
     bench.columns.truncate(known);
-    let ledger = Ledger::new(&rows, |_| true).believing(Class::Closure);
-    let beside: Vec<Term> = others.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
-    let one = |(i, setting): (usize, &f64)| {
-        let first = beside.len();
-        let mut terms = beside.clone();
-        terms.extend(own.iter().enumerate().map(|(j, term)| Term { column: first + i * own.len() + j, ..*term }));
-        let fit = ledger.fit(&terms);
+    let ledger = ledger.believing(Class::Closure);
+    let (beside, each) = all.split_at(first);
+    let one = |(setting, terms): (f64, &[Term])| {
+        let fit = ledger.fit(&[beside, terms].concat());
         Tried {
-            setting: *setting,
+            setting,
             evidence: fit.evidence,
             theta: fit.theta.rows(first, own.len()).into_owned(),
             covariance: fit.covariance.view((first, first), (own.len(), own.len())).into_owned(),
         }
     };
-    settings.iter().enumerate().map(one).collect()
+    settings.into_iter().zip(each.chunks_exact(own.len())).map(one).collect()
 }
 
-fn mixture(tried: &[Tried]) -> Settled {
-    let most = tried.iter().map(|one| one.evidence).fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = tried.iter().map(|one| (one.evidence - most).exp()).sum();
-    let shares: Vec<f64> = tried.iter().map(|one| (one.evidence - most).exp() / sum).collect();
+fn mixture(tried: &[Tried]) -> Option<Settled> {
+    let shares = posterior(tried.iter().map(|one| one.evidence))?;
     let each = || tried.iter().zip(&shares);
     let count = tried.first().map_or(0, |one| one.theta.len());
     let theta = each().fold(DVector::zeros(count), |mean, (one, share)| mean + &one.theta * *share);
@@ -147,7 +143,7 @@ fn mixture(tried: &[Tried]) -> Settled {
     // Between two neighbours nothing is known.
     let step = tried.windows(2).map(|pair| pair[1].setting - pair[0].setting).fold(0.0, f64::max);
     let spread: f64 = each().map(|(one, share)| (one.setting - setting).powi(2) * share).sum();
-    Settled { theta, covariance, setting, sigma: (spread + step * step / 12.0).sqrt() }
+    Some(Settled { theta, covariance, setting, sigma: (spread + step * step / 12.0).sqrt() })
 }
 
 #[cfg(test)]
@@ -164,7 +160,7 @@ mod tests {
             theta: DVector::from_element(1, theta),
             covariance: DMatrix::from_element(1, 1, 4.0),
         };
-        let settled = mixture(&[one(10.0, 1.0), one(12.0, 7.0)]);
+        let settled = mixture(&[one(10.0, 1.0), one(12.0, 7.0)]).expect("it is finite");
         assert!((settled.theta[0] - 4.0).abs() < 1e-12 && (settled.covariance[(0, 0)] - 13.0).abs() < 1e-12);
         assert!((settled.setting - 11.0).abs() < 1e-12 && (settled.sigma.powi(2) - (1.0 + 4.0 / 12.0)).abs() < 1e-12);
     }

@@ -25,12 +25,12 @@ use super::{AXES, Card, DPS, Effect, Model, Variant, parameter, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::influence::Push;
-use crate::diagnose::twin::trajectory::Moment;
+use crate::diagnose::twin::trajectory::{Moment, SLOPE_S};
 
 /// Of a zone whose size is not known yet, deg/s: narrow, so that its edge is all that shows.
 const NARROW: f64 = 1e-3;
 /// Of [`Moment::mean_rate`], s.
-const WINDOW_S: f64 = 1.0 / 6.0;
+const WINDOW_S: f64 = 2.0 * SLOPE_S;
 /// A mean rate that never changes counts as one where it stands out by so many sigmas.
 const STANDS_OUT: f64 = 6.0;
 

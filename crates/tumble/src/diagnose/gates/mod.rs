@@ -4,7 +4,7 @@
 //! clean recordings, whatever the sensor's rate, rounding and noise, and however a person's hands shake.
 
 mod aliasing;
-mod chance;
+pub mod chance;
 mod closure;
 mod coarse;
 mod gaps;

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector3;
 
 use super::chance::{LN_ALARM, SURE, ln_mean_square_tail, mean_square_quantile, median, shift_seen};
-use super::spectrum::taper;
+use super::spectrum::Taper;
 use super::tell::{Outcome, found, limit, untestable, value};
 use super::view::{Rest, View};
 use crate::diagnose::catalogue::Card;
@@ -187,13 +187,13 @@ fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
     let mut all =
         Swing { hz, rests: 0.0, samples: 0.0, across: 0.0, along: 0.0, force: 0.0, product: 0.0, square: 0.0 };
     for rest in rests.iter().filter(|rest| rest.dt_s * rest.means.len() as f64 * hz >= 1.0) {
-        let shape = taper(rest.means.len(), TAPER);
-        let (sum, squares) = shape.iter().fold((0.0, 0.0), |(s, q), w| (s + w, q + w * w));
-        let count = sum * sum / squares;
+        let taper = Taper::new(rest.means.len(), TAPER);
+        let count = taper.gain();
         let mut sums = [[Vector3::zeros(); 2]; 2];
         for (k, values) in rest.means.iter().enumerate() {
             let (sin, cos) = (TAU * hz * rest.dt_s * k as f64).sin_cos();
-            let (sin, cos) = (2.0 * sin * shape[k] / sum, 2.0 * cos * shape[k] / sum);
+            let weight = 2.0 * taper.weights[k] / taper.sum;
+            let (sin, cos) = (sin * weight, cos * weight);
             for (triad, sums) in sums.iter_mut().enumerate() {
                 let value = Vector3::new(values[3 * triad], values[3 * triad + 1], values[3 * triad + 2]);
                 sums[0] += value * cos;

@@ -1,11 +1,14 @@
 //! Generic shapes of what lay on which side before: memories by pose, not by time.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::generic::Family;
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
-use crate::diagnose::twin::influence::Push;
+use crate::diagnose::twin::influence::{Influence, Push};
 use crate::diagnose::twin::rows::CHANNELS;
 
 /// Readings that remember how the sensor lay before.
@@ -22,19 +25,7 @@ pub(super) fn previous_face(twin: &Twin) -> Family {
         }
         before.resize(stretch.number + 1, last);
     }
-    let before = std::sync::Arc::new(before);
-    let (mut members, mut influences) = (Vec::new(), Vec::new());
-    for (channel, name) in CHANNELS.iter().enumerate() {
-        for (axis, letter) in AXES.iter().enumerate() {
-            let before = before.clone();
-            let unit = if channel < 3 { DPS } else { 1e-3 * G };
-            members.push((channel, format!("previous f_{letter} on {name}")));
-            influences.push(reading(move |moment| {
-                let value = before.get(moment.stretch).map_or(0.0, |force: &Vector3<f64>| force[axis]);
-                Push::channel(channel, unit * value)
-            }));
-        }
-    }
+    let (members, influences) = by_stretch(before, 0..6, "previous f_");
     Family { name: "the face before".into(), gyro: false, members, influences }
 }
 
@@ -52,18 +43,22 @@ pub(super) fn last_side(twin: &Twin, gyro: bool) -> Family {
         }
         sides.resize(stretch.number + 1, side);
     }
-    let sides = std::sync::Arc::new(sides);
-    let (mut members, mut influences) = (Vec::new(), Vec::new());
-    for channel in if gyro { 0..3 } else { 3..6 } {
-        for (axis, letter) in AXES.iter().enumerate() {
-            let sides = sides.clone();
-            let unit = if gyro { DPS } else { 1e-3 * G };
-            members.push((channel, format!("last side of {letter} on {}", CHANNELS[channel])));
-            influences.push(reading(move |moment| {
-                let value = sides.get(moment.stretch).map_or(0.0, |side: &Vector3<f64>| side[axis]);
-                Push::channel(channel, unit * value)
-            }));
-        }
-    }
+    let (members, influences) = by_stretch(sides, if gyro { 0..3 } else { 3..6 }, "last side of ");
     Family { name: "the side before".into(), gyro, members, influences }
+}
+
+/// A vector that each stretch has, every component of it on each of these channels: 1 °/s or 1 mg per unit.
+fn by_stretch(values: Vec<Vector3<f64>>, channels: Range<usize>, name: &str) -> (Vec<(usize, String)>, Vec<Influence>) {
+    let values = Arc::new(values);
+    let each = channels.flat_map(|channel| (0..3).map(move |axis| (channel, axis)));
+    each.map(|(channel, axis)| {
+        let values = values.clone();
+        let unit = if channel < 3 { DPS } else { 1e-3 * G };
+        let influence = reading(move |moment| {
+            let value = values.get(moment.stretch).map_or(0.0, |value: &Vector3<f64>| value[axis]);
+            Push::channel(channel, unit * value)
+        });
+        ((channel, format!("{name}{} on {}", AXES[axis], CHANNELS[channel])), influence)
+    })
+    .unzip()
 }

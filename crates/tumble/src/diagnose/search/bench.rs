@@ -262,10 +262,16 @@ impl Bench {
     /// The model of some terms under a noise. Only their columns are carried: a hundred times faster than all.
     pub fn fit_alone(&mut self, noise: Noise, terms: &[Term]) -> Fit {
         self.twin.noise = noise;
+        let (ledger, terms) = self.ledger_of(terms);
+        ledger.fit(&terms)
+    }
+
+    /// Sums over rows that carry these terms' columns alone, under the noise in force, and the terms by their place in them.
+    pub fn ledger_of(&mut self, terms: &[Term]) -> (Ledger, Vec<Term>) {
         let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
         let rows = self.rows_of(&columns);
-        let local: Vec<_> = terms.iter().enumerate().map(|(k, term)| Term { column: k, ..*term }).collect();
-        Ledger::new(&rows, |_| true).fit(&local)
+        let local = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+        (Ledger::new(&rows, |_| true), local)
     }
 
     /// Rows that carry these columns alone, in this order, under the noise in force.

@@ -185,6 +185,17 @@ fn solve(terms: &[Term], grams: &[DMatrix<f64>], moments: &[DVector<f64>], fit: 
     Some(2.0 * cholesky.l_dirty().diagonal().iter().map(|v| v.ln()).sum::<f64>())
 }
 
+/// Probabilities by evidence, all as likely before it: `pᵢ = exp(ln pᵢ − ln Σ exp ln p)`; none where nothing is finite.
+pub fn posterior(evidence: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
+    let evidence: Vec<f64> = evidence.into_iter().collect();
+    let most = evidence.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !most.is_finite() {
+        return None;
+    }
+    let sum: f64 = evidence.iter().map(|one| (one - most).exp()).sum();
+    Some(evidence.iter().map(|one| (one - most).exp() / sum).collect())
+}
+
 /// `ln mean exp`.
 pub fn log_mean(values: &[f64]) -> f64 {
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -192,4 +203,16 @@ pub fn log_mean(values: &[f64]) -> f64 {
         return most;
     }
     most + (values.iter().map(|value| (value - most).exp()).sum::<f64>() / values.len() as f64).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::posterior;
+
+    #[test]
+    fn probabilities_by_evidence() {
+        let found = posterior([-500.0, -500.0, -600.0]).expect("it is finite");
+        assert!((found[0] - 0.5).abs() < 1e-12 && (found[1] - 0.5).abs() < 1e-12 && found[2] < 1e-40);
+        assert_eq!(posterior([f64::NEG_INFINITY]), None);
+    }
 }

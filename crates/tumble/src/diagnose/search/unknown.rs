@@ -18,10 +18,11 @@ pub const ALIAS: f64 = 0.95;
 
 /// Shapes that go together.
 #[derive(Clone, Debug)]
-struct Block {
-    family: usize,
+pub struct Block {
+    /// Of [`Bench::families`].
+    pub family: usize,
     /// Among the family's members.
-    members: Vec<usize>,
+    pub members: Vec<usize>,
 }
 
 /// What a block gained.
@@ -31,17 +32,11 @@ pub struct Leftover {
     pub evidence: f64,
     /// ln p of the model without any block.
     pub base: f64,
-    /// The best block's own.
-    pub best: f64,
-    /// Its family.
-    pub family: usize,
-    /// Its members.
-    pub members: Vec<usize>,
-    /// All blocks by their gain: (family, members, gain), best first.
-    pub ranking: Vec<(usize, Vec<usize>, f64)>,
-    /// Blocks left out as aliases of the effect in whose place they were weighed: (family, members, gain).
-    pub aliases: Vec<(usize, Vec<usize>, f64)>,
-    /// Of the signal, by row.
+    /// All blocks by their gain, best first.
+    pub ranking: Vec<(Block, f64)>,
+    /// Blocks left out as aliases of the effect in whose place they were weighed, with their gain.
+    pub aliases: Vec<(Block, f64)>,
+    /// The best block's share of each row.
     pub signal: Vec<f64>,
     /// The rows that it was found in.
     pub rows: crate::diagnose::twin::rows::Rows,
@@ -115,7 +110,7 @@ pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
     // Columns of the effect itself among the given: its put-back terms stand last.
     let own: Vec<usize> = (given - own.len().min(given)..given).collect();
     let (mut all, mut ranking, mut aliases) = (Vec::new(), Vec::new(), Vec::new());
-    let mut best: Option<(f64, Block, Vec<Term>, Fit)> = None;
+    let mut best: Option<(f64, Vec<Term>, Fit)> = None;
     for block in blocks(bench) {
         let start = bench.families[block.family].1.start;
         let local: Vec<usize> = block.members.iter().map(|member| given + start - first + member).collect();
@@ -138,48 +133,23 @@ pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
         }
         let Some((gain, model, fit)) = strongest else { continue };
         if !own.is_empty() && is_alias(&ledger, &fit, &model[given..], given, &own) {
-            aliases.push((block.family, block.members.clone(), gain));
+            aliases.push((block, gain));
             continue;
         }
         all.push(log_mean(&gains));
-        ranking.push((block.family, block.members.clone(), gain));
+        ranking.push((block, gain));
         if best.as_ref().is_none_or(|best| gain > best.0) {
-            best = Some((gain, block, model, fit));
+            best = Some((gain, model, fit));
         }
     }
-    let evidence = log_mean(&all);
-    let Some((gain, block, model, fit)) = best else {
-        let signal = vec![0.0; rows.at.len()];
-        let evidence = f64::NEG_INFINITY;
-        return Leftover {
-            evidence,
-            base: whole.evidence,
-            best: 0.0,
-            family: 0,
-            members: Vec::new(),
-            ranking,
-            aliases,
-            signal,
-            rows,
-        };
+    let share = |i: usize| {
+        let (_, model, fit) = best.as_ref()?;
+        let block = model.iter().zip(fit.theta.iter()).skip(given);
+        Some(block.map(|(term, theta)| rows.responses[(i, term.column)] * theta).sum())
     };
-    let signal = (0..rows.at.len())
-        .map(|i| {
-            model[given..].iter().enumerate().map(|(k, t)| rows.responses[(i, t.column)] * fit.theta[given + k]).sum()
-        })
-        .collect();
-    ranking.sort_by(|a: &(usize, Vec<usize>, f64), b| b.2.total_cmp(&a.2));
-    Leftover {
-        evidence,
-        base: whole.evidence,
-        best: gain,
-        family: block.family,
-        members: block.members,
-        ranking,
-        aliases,
-        signal,
-        rows,
-    }
+    let signal = (0..rows.at.len()).map(|i| share(i).unwrap_or(0.0)).collect();
+    ranking.sort_by(|a: &(Block, f64), b| b.1.total_cmp(&a.1));
+    Leftover { evidence: log_mean(&all), base: whole.evidence, ranking, aliases, signal, rows }
 }
 
 /// Does the effect itself explain the block's signal?

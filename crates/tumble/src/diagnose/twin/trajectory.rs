@@ -7,7 +7,7 @@ use tumble_core::face::Face;
 use super::data::{Deed, Raw, Stretch};
 
 /// Window of the angular acceleration's slope to either side, s: as in the `batch` reference.
-const SLOPE_S: f64 = 1.0 / 12.0;
+pub const SLOPE_S: f64 = 1.0 / 12.0;
 
 /// What the residuals are residuals of.
 #[derive(Clone, Copy, Debug, PartialEq)]
