@@ -104,7 +104,7 @@ pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
 
 /// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
 /// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
-pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<String> {
+pub fn circumstances(bench: &Bench, instead: &[Leftover], evidence: f64) -> Vec<String> {
     const FAMILIES: [&str; 7] = [
         "time",
         "slow oscillation",
@@ -116,15 +116,27 @@ pub fn circumstances(bench: &Bench, instead: &Leftover, evidence: f64) -> Vec<St
     ];
     // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference; and
     // the twentieth of the whole by which an alias may fall short of being the same.
-    let whole = (evidence - instead.base).max(0.0);
-    let own = instead.ranking.iter().map(|ranked| (ranked, TIE));
-    let aliases = instead.aliases.iter().map(|ranked| (ranked, 2.0 * TIE + (1.0 - ALIAS) * whole));
-    let is_tied = |((block, gain), gap): &(&(Block, f64), f64)| {
-        FAMILIES.contains(&bench.families[block.family].0.name.as_str()) && instead.base + gain > evidence - gap
-    };
-    let mut tied: Vec<&(Block, f64)> = own.chain(aliases).filter(is_tied).map(|(ranked, _)| ranked).collect();
-    tied.sort_by(|a, b| b.1.total_cmp(&a.1));
-    tied.into_iter().take(3).map(|(block, _)| shape(bench, block)).collect()
+    let base = instead.iter().map(|leftover| leftover.base).fold(f64::NEG_INFINITY, f64::max);
+    let of_alias = 2.0 * TIE + (1.0 - ALIAS) * (evidence - base).max(0.0);
+    let mut tied: Vec<(f64, String)> = Vec::new();
+    for leftover in instead {
+        let own = leftover.ranking.iter().map(|ranked| (ranked, TIE));
+        for ((block, gain), gap) in own.chain(leftover.aliases.iter().map(|ranked| (ranked, of_alias))) {
+            let reached = leftover.base + gain;
+            if reached > evidence - gap && FAMILIES.contains(&bench.families[block.family].0.name.as_str()) {
+                tied.push((reached, shape(bench, block)));
+            }
+        }
+    }
+    tied.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut said: Vec<String> = Vec::new();
+    for (_, shape) in tied {
+        if !said.contains(&shape) {
+            said.push(shape);
+        }
+    }
+    said.truncate(3);
+    said
 }
 
 /// A block in words.

@@ -79,17 +79,17 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.dropped.push(finding.found.id.clone());
             continue;
         }
-        let shape = shape_instead(bench, selection, k);
-        let clear = selection.evidence - (shape.base + shape.evidence);
+        let shapes = shapes_instead(bench, selection, &[k]);
+        let clear = shapes.clear(selection.evidence);
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
         if clear < -TIE {
-            judged.better_without_name(clear, exhibits::correlates(bench, &shape));
+            judged.better_without_name(clear, exhibits::correlates(bench, shapes.best()));
             judged.demoted.push(finding);
         } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
             judged.demoted.push(finding);
         } else {
-            finding.found.tied_with_shapes = exhibits::circumstances(bench, &shape, selection.evidence);
+            finding.found.tied_with_shapes = exhibits::circumstances(bench, &shapes.at, selection.evidence);
             judged.named.push(finding);
         }
     }
@@ -115,32 +115,51 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     if shifts.len() < 2 {
         return;
     }
-    let shape = unknown::weigh(bench, &shifts);
-    let clear = selection.evidence - (shape.base + shape.evidence);
+    let shapes = shapes_instead(bench, selection, &shifts);
+    let clear = shapes.clear(selection.evidence);
     if clear < -TIE {
-        judged.better_without_name(clear, exhibits::correlates(bench, &shape));
+        judged.better_without_name(clear, exhibits::correlates(bench, shapes.best()));
         let (fallen, named) = std::mem::take(&mut judged.named).into_iter().partition(|finding| !finding.is_walk);
         judged.named = named;
         judged.demoted.extend::<Vec<Finding>>(fallen);
     }
 }
 
-/// The best that shapes without a name do in the place of an accepted effect, at its noise and at the null's.
-fn shape_instead(bench: &mut Bench, selection: &Selection, k: usize) -> Leftover {
-    let noise = bench.twin.noise;
-    let walks = bench.candidates[bench.accepted[k].candidate].walk.is_some();
-    let mut best: Option<Leftover> = None;
-    for noise in
-        [selection.null_noise, noise].into_iter().take(if walks || noise == selection.null_noise { 1 } else { 2 })
-    {
-        bench.twin.noise = noise;
-        let shape = unknown::weigh(bench, &[k]);
-        if best.as_ref().is_none_or(|best| shape.base + shape.evidence > best.base + best.evidence) {
-            best = Some(shape);
-        }
+/// What shapes without a name do in the place of accepted effects.
+struct Instead {
+    /// At the null's noise and at the noise in force: which one a shape needs is its own affair. At least one.
+    at: Vec<Leftover>,
+}
+
+impl Instead {
+    /// Where all shapes together explain most.
+    fn best(&self) -> &Leftover {
+        let most =
+            |best: usize, next: usize| if self.at[next].reached() > self.at[best].reached() { next } else { best };
+        &self.at[(1..self.at.len()).fold(0, most)]
     }
-    bench.twin.noise = noise;
-    best.unwrap_or_else(|| unknown::weigh(bench, &[k]))
+
+    /// ln of the names' odds against all shapes.
+    fn clear(&self, evidence: f64) -> f64 {
+        evidence - self.best().reached()
+    }
+}
+
+/// A walk is a part of the noise in force: in its place that is the null's.
+fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Instead {
+    let in_force = bench.twin.noise;
+    let walks = of.iter().any(|&k| bench.candidates[bench.accepted[k].candidate].walk.is_some());
+    let mut noises = vec![selection.null_noise];
+    if !walks && in_force != selection.null_noise {
+        noises.push(in_force);
+    }
+    let weigh = |noise| {
+        bench.twin.noise = noise;
+        unknown::weigh(bench, of)
+    };
+    let at = noises.into_iter().map(weigh).collect();
+    bench.twin.noise = in_force;
+    Instead { at }
 }
 
 /// A walk that is none.

@@ -48,6 +48,11 @@ impl Leftover {
         self.evidence > -FALSE_ALARMS.ln()
     }
 
+    /// ln p with the blocks, each as likely as every other.
+    pub fn reached(&self) -> f64 {
+        self.base + self.evidence
+    }
+
     /// Largest probability of as much by chance.
     pub fn p_value(&self) -> f64 {
         (-self.evidence).exp().min(1.0)
