@@ -2,7 +2,7 @@
 
 use super::diagnosis::{ChannelFit, FitReport, Found, Pair, Place, RunnerUp, Value};
 use super::held_out;
-use super::numbers::{shift_values, total, walk_value};
+use super::numbers::{shift_values, total, walk_density, walk_value};
 use super::posterior;
 use super::search::bench::Bench;
 use super::search::ledger::Ledger;
@@ -83,7 +83,8 @@ fn finding(bench: &mut Bench, selection: &Selection, noise: Noise, k: usize, ori
 fn stated(bench: &mut Bench, selection: &Selection, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
     match bench.candidates[bench.accepted[k].candidate].walk {
         Some((gyro, unit_si, unit)) => {
-            (vec![walk_value(bench, noise, gyro, unit_si, unit)], vec![0.0; selection.after.at.len()])
+            let found = walk_density(bench, noise, gyro);
+            (vec![walk_value(&found, unit_si, unit)], vec![0.0; selection.after.at.len()])
         }
         None => shift_values(bench, &selection.after, ledger, noise, k),
     }

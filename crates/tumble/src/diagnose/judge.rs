@@ -1,4 +1,9 @@
 //! Which of the names that the search accepted may be said.
+//!
+//! Before the recording is seen, each of the C names is taken to be as likely as all that has no name together (something outside the
+//! catalogue: one in C + 1). The odds of a name against the shapes are then its evidence over their mean, and it is said at 20 to
+//! 1, or where the shapes are no more than chance themselves. Several names at once are a coincidence that one thing without a
+//! name is not: each further one is one of C, and costs ln C.
 
 use super::exhibits;
 use super::findings::{Finding, TIE};
@@ -32,10 +37,10 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Shapes without a name explain better than a name, whose odds against them are e^`clear`.
-    fn better_without_name(&mut self, clear: f64, shapes: Vec<(String, f64)>) {
+    /// Shapes without a name explain what a name would, and chance would explain it with this probability at most.
+    fn nameless(&mut self, p_value: f64, shapes: Vec<(String, f64)>) {
         self.unknown = true;
-        self.p_value = self.p_value.min(clear.exp());
+        self.p_value = self.p_value.min(p_value);
         self.better.extend(shapes);
     }
 
@@ -54,7 +59,7 @@ impl Judged {
     }
 }
 
-/// A name falls where a shape without one explains more, or where something is left that it does not stand clear of.
+/// A name falls where shapes without one explain nearly as much, or where something is left that it does not stand clear of.
 pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
     let mut judged = Judged {
         named: Vec::new(),
@@ -83,8 +88,8 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         let clear = shapes.clear(selection.evidence);
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
-        if clear < -TIE {
-            judged.better_without_name(clear, exhibits::correlates(bench, shapes.best()));
+        if clear < TIE && shapes.best().is_real() {
+            judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
             judged.demoted.push(finding);
         } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
             judged.demoted.push(finding);
@@ -104,7 +109,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     judged
 }
 
-/// Several names may stand for one thing that has none, each better in its place than a shape that leaves the others where they
+/// Several names may stand for one thing that has none, each clear of a shape in its place that leaves the others where they
 /// are: the shapes once more in the place of them all.
 fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     let named = |accepted: &Accepted| {
@@ -117,8 +122,9 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     }
     let shapes = shapes_instead(bench, selection, &shifts);
     let clear = shapes.clear(selection.evidence);
-    if clear < -TIE {
-        judged.better_without_name(clear, exhibits::correlates(bench, shapes.best()));
+    let coincidence = (shifts.len() - 1) as f64 * (bench.candidates.len() as f64).ln();
+    if clear < TIE + coincidence && shapes.best().is_real() {
+        judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
         let (fallen, named) = std::mem::take(&mut judged.named).into_iter().partition(|finding| !finding.is_walk);
         judged.named = named;
         judged.demoted.extend::<Vec<Finding>>(fallen);
@@ -187,7 +193,7 @@ fn refute_walks(bench: &mut Bench, found: &[Finding], judged: &mut Judged) -> Ve
         };
         let Some((why, gain)) = wandering::refute(bench, gyro) else { continue };
         let (triad, name) = if gyro { ("gyro_", "gyroscope") } else { ("accel_", "accelerometer") };
-        judged.better_without_name(-gain, vec![(format!("{why} ({name})"), gain)]);
+        judged.nameless((-gain).exp(), vec![(format!("{why} ({name})"), gain)]);
         refuted.push(Refuted { id: finding.found.id.clone(), triad, evidence: finding.found.evidence });
     }
     refuted

@@ -65,9 +65,17 @@ fn own_fit(bench: &mut Bench, k: usize) -> Fit {
     ledger.believing(Class::Closure).fit(&terms)
 }
 
+/// A random walk's density: variance it gains in a second.
+pub struct WalkDensity {
+    /// (rad/s)²/s or (m/s²)²/s.
+    pub density: f64,
+    /// Sigma of its logarithm.
+    pub sigma_log: f64,
+}
+
 /// A walk's size by its own likelihood: the maximum, and the curvature in its logarithm. Classes of rows scatter beyond it only
 /// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
-pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, unit: &'static str) -> Value {
+pub fn walk_density(bench: &mut Bench, noise: Noise, gyro: bool) -> WalkDensity {
     let free = freed(bench.accepted_terms(&[]));
     let with = |noise: Noise, factor: f64| {
         if gyro {
@@ -96,9 +104,13 @@ pub fn walk_value(bench: &mut Bench, noise: Noise, gyro: bool, unit_si: f64, uni
         at += ((high - low) / (2.0 * step) / curvature).clamp(-1.5, 1.5);
         sigma_log = curvature.sqrt().recip();
     }
-    bench.twin.noise = with(in_force, at.exp());
-    bench.wander = (bench.twin.noise.bias_walk, bench.twin.noise.force_walk);
-    let density = if gyro { bench.twin.noise.bias_walk } else { bench.twin.noise.force_walk };
-    let value = density.sqrt() / unit_si;
-    Value { name: "q".into(), value, sigma: 0.5 * sigma_log * value, unit: unit.into() }
+    bench.twin.noise = in_force;
+    let density = at.exp() * if gyro { noise.bias_walk } else { noise.force_walk };
+    WalkDensity { density, sigma_log }
+}
+
+/// The walk's size, `√q`, in its unit.
+pub fn walk_value(found: &WalkDensity, unit_si: f64, unit: &str) -> Value {
+    let value = found.density.sqrt() / unit_si;
+    Value { name: "q".into(), value, sigma: 0.5 * found.sigma_log * value, unit: unit.into() }
 }

@@ -112,7 +112,8 @@ fn assemble(
         let gains = selection.first.iter().filter(|score| score.gain > selection.threshold);
         let alike = gains.map(|score| bench.candidates[score.candidate].effect.card.id.to_string());
         resembles.extend(alike.filter(|id| !effects.iter().any(|effect| effect.id == *id)).take(3));
-        resembles.dedup();
+        let mut said = std::collections::BTreeSet::new();
+        resembles.retain(|id| said.insert(id.clone()));
         Unknown {
             place: findings::place(bench, &leftover.rows, &leftover.signal, origin_s),
             correlates_with: correlates.into_iter().map(|(shape, _)| shape).take(5).collect(),

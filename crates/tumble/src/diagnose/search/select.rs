@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, log_mean};
 use super::null;
-use crate::diagnose::numbers::walk_value;
+use crate::diagnose::numbers::walk_density;
 use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
 use crate::diagnose::twin::rows::Rows;
 
@@ -150,11 +150,14 @@ fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&
 fn refine_walks(bench: &mut Bench) {
     let walks: Vec<_> =
         bench.accepted.iter().filter_map(|accepted| bench.candidates[accepted.candidate].walk).collect();
-    for (gyro, unit_si, unit) in walks {
+    for (gyro, ..) in walks {
         let noise = settle_walks(bench).0;
         bench.twin.noise = noise;
-        walk_value(bench, noise, gyro, unit_si, unit);
+        let found = walk_density(bench, noise, gyro).density;
+        let wander = if gyro { &mut bench.wander.0 } else { &mut bench.wander.1 };
+        *wander = found;
     }
+    bench.twin.noise = settle_walks(bench).0;
 }
 
 /// Takes a candidate in, unless its non-linear refit does not hold what the linear score promised, or its numbers have no
@@ -201,7 +204,7 @@ fn is_meaningful(bench: &mut Bench) -> bool {
 
 /// What no longer pays, given what came later, goes.
 fn prune(bench: &mut Bench, threshold: f64) {
-    while bench.accepted.len() > 1 {
+    while !bench.accepted.is_empty() {
         let whole = settle_walks(bench).1;
         let losses: Vec<f64> = (0..bench.accepted.len()).map(|k| whole - without(bench, k)).collect();
         let Some((k, _)) =

@@ -81,10 +81,11 @@ fn blocks(bench: &Bench) -> Vec<Block> {
         for shape in 0..per_channel {
             add((0..channels.len()).map(|k| k * per_channel + shape).collect());
         }
-        // Shapes come in threes, one an axis: each axis on its own channel.
+        // Shapes come in threes, one an axis: each axis on its own channel, on the next, and on the one after, as in a product of
+        // vectors.
         if channels.len() == 3 {
-            for three in (0..per_channel / 3).map(|three| 3 * three) {
-                add((0..3).map(|k| k * per_channel + three + k).collect());
+            for (three, on) in (0..per_channel / 3).flat_map(|three| (0..3).map(move |on| (3 * three, on))) {
+                add((0..3).map(|k| k * per_channel + three + (k + on) % 3).collect());
             }
         }
         if family.name == "slow oscillation" {
