@@ -1,8 +1,8 @@
 //! A knock that the procedure does not bring about (`shock`).
 //!
-//! Statistic: the specific force less its median over ±60 ms. A knock is a burst of at most 35 ms (two samples at least) whose
-//! peak is above 12 times the rms of what surrounds it, from 1.2 s (where motion changes sooner: 0.4 s) before to as much after, four
-//! times the largest of it, and above 0.05 g. A normal deviate
+//! Statistic: the specific force less its median over ±60 ms. A knock is a burst of at most 35 ms (a single sample only if two
+//! channels stand out by 12 sigmas) whose peak is above 12 times the rms of what surrounds it, from 1.2 s (where motion changes
+//! sooner: 0.4 s) before to as much after, four times the largest of it, and above 0.05 g. A normal deviate
 //! reaches 12 sigmas with 1e-33: chance has no part in it. What must be kept out is what people do: put-downs, pushes and
 //! stops at a fence. They come where motion changes, so gravity's direction (3°) and the mean rate (3 °/s, or four tenths of the
 //! rate) must be the same before and after; a hand's moves fail the rms, since they are as rough everywhere. Within 0.4 s of
@@ -108,7 +108,7 @@ fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
     for (i, value) in (start..).zip(ahead) {
         if *value > 0.1 * peak {
             end = i + 1;
-        } else if i - end >= calm {
+        } else if i >= end + calm {
             break;
         }
     }
@@ -118,7 +118,7 @@ fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
 /// Its peak and how many times the surrounding rms that is, if it is a knock.
 fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)> {
     let length_s = burst.len() as f64 * view.dt_s;
-    if burst.len() < 2 || length_s > LONGEST_S.max(3.5 * view.dt_s) {
+    if !is_shared(view, burst) || length_s > LONGEST_S.max(3.5 * view.dt_s) {
         return None;
     }
     let peak = rough[burst.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
@@ -126,6 +126,20 @@ fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)>
         let calm = Calm::about(view, rough, burst, around_s)?;
         (peak > calm.asked()).then(|| (peak, peak / calm.rms.max(1e-9)))
     })
+}
+
+/// A single sample of one channel is a reading gone wrong; a knock that is as short as a sample moves several.
+fn is_shared(view: &View, burst: &Range<usize>) -> bool {
+    let (Some(before), after) = (burst.start.checked_sub(1), burst.end) else { return false };
+    if burst.len() > 1 || after >= view.len() {
+        return burst.len() > 1;
+    }
+    let stands_out = |channel: &usize| {
+        let values = &view.channels[*channel];
+        let size = (values[burst.start] - 0.5 * (values[before] + values[after])).abs();
+        view.sigma[*channel].is_finite() && size > TIMES * view.sigma[*channel]
+    };
+    (0..6).filter(stands_out).count() > 1
 }
 
 /// What surrounds a place where motion does not change.
