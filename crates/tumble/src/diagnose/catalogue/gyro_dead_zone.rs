@@ -19,7 +19,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::{AXES, Card, DPS, Effect, Model, Variant, parameter, reading};
 use crate::diagnose::twin::Twin;
@@ -48,9 +48,11 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(twin: &Twin) -> Model {
-    let motions = Arc::new(motions(twin));
-    // The zone may lie about the sensor's own zero, or, where a driver takes the bias off first, about rest.
-    Model::Shift(vec![variant(1.0, &motions), variant(0.0, &motions)])
+    // The zone may lie about the reading's zero, or, where a driver takes the bias off first, about rest; and it may be of the body's
+    // rate, before the axes are crooked: one per cent of a turn at 60 deg/s is wider than most zones.
+    let element = Arc::new(motions(twin, twin.nominal.gyro.try_inverse().unwrap_or_else(Matrix3::identity)));
+    let body = Arc::new(motions(twin, Matrix3::identity()));
+    Model::Shift(vec![variant(1.0, &element), variant(0.0, &element), variant(0.0, &body)])
 }
 
 /// The readings of a turn or move, by axis; rests have none.
@@ -75,15 +77,16 @@ struct Seen {
 }
 
 impl Motion {
-    fn of(moments: &[&Moment], noise: &Vector3<f64>) -> Self {
+    /// `axes` takes the body's rates to those on which the zone acts.
+    fn of(moments: &[&Moment], axes: &Matrix3<f64>, noise: &Vector3<f64>) -> Self {
         let count = moments.len().max(1) as f64;
-        let mean = moments.iter().map(|moment| moment.mean_rate).sum::<Vector3<f64>>() / count;
-        let about = |moment: &&Moment| (moment.mean_rate - mean).map(|v| v * v);
+        let mean = moments.iter().map(|moment| axes * moment.mean_rate).sum::<Vector3<f64>>() / count;
+        let about = |moment: &&Moment| (axes * moment.mean_rate - mean).map(|v| v * v);
         let scatter = moments.iter().map(about).sum::<Vector3<f64>>() / count;
         let length_s = moments.last().map_or(0.0, |last| last.t_s) - moments.first().map_or(0.0, |first| first.t_s);
         let windows = (length_s / WINDOW_S).max(1.0);
         let seen = |moment: &&Moment| Seen {
-            mean: moment.mean_rate,
+            mean: axes * moment.mean_rate,
             tremor: moment.tremor.zip_map(noise, |tremor, noise| (tremor * tremor - noise).max(0.0).sqrt()),
             zero: moment.zero,
         };
@@ -122,14 +125,14 @@ fn believed(all: f64, noise: f64, windows: f64) -> f64 {
 }
 
 /// By stretch; rests have none.
-fn motions(twin: &Twin) -> Vec<Motion> {
+fn motions(twin: &Twin, axes: Matrix3<f64>) -> Vec<Motion> {
     let noise = &twin.trajectory.mean_rate_variance;
     let mut by_stretch: Vec<Vec<&Moment>> = Vec::new();
     for moment in twin.trajectory.moments.iter().filter(|moment| !matches!(moment.deed, Deed::Rest { .. })) {
         by_stretch.resize(by_stretch.len().max(moment.stretch + 1), Vec::new());
         by_stretch[moment.stretch].push(moment);
     }
-    by_stretch.into_iter().map(|moments| Motion::of(&moments, noise)).collect()
+    by_stretch.into_iter().map(|moments| Motion::of(&moments, &axes, noise)).collect()
 }
 
 fn variant(about: f64, motions: &Arc<Vec<Motion>>) -> Variant {

@@ -121,8 +121,10 @@ pub fn examine(scene: &Scene) -> Gated {
         gated.take(gyro);
     }
     gated.take(accel);
-    gated.take(coarse);
-    gated.take(hole::examine(&view));
+    let hole = hole::examine(&view);
+    // Rates that a driver sets to zero have no scatter, as coarse ones have none.
+    gated.take(if hole.found.is_some() { Outcome { found: None, ..coarse } } else { coarse });
+    gated.take(hole);
     gated.take(mapped.axes);
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
