@@ -16,7 +16,8 @@ use crate::recording::Basis;
 const IMITATED: &[&str] =
     &["gyro_dead_zone", "gyro_scale_cubic", "gyro_scale_asymmetry", "gyro_bias_step", "gyro_g_squared"];
 
-const LEAST_RATIO: f64 = 0.52;
+/// A step alone scatters readings by up to half of it.
+pub const LEAST_RATIO: f64 = 0.52;
 /// √(0.52² − 1/12), less three sigmas of the median.
 const UNROUNDED: f64 = 0.41;
 

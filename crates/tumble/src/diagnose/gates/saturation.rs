@@ -5,8 +5,8 @@
 //! of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends in the peak of any
 //! motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
 //! all of the next three steps below it by a margin that fair coins reach with e⁻¹¹·⁵ (Hoeffding): a density that falls
-//! towards its extreme has fewer. Pile-up is only asked where noise is at least half a step, so that a constant reading is
-//! not just rounding.
+//! towards its extreme has fewer. Pile-up is only asked where noise is more than the half step by which
+//! rounding alone scatters, so that a constant reading is not just rounding.
 //! Or (3) *the rail*: two readings at the end (0.2 %) of a range that is stated or shown by its step.
 //!
 //! A level that all readings of a sensor at rest could reach by its own offset is a level like any other.
@@ -16,6 +16,7 @@ use std::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::chance::{LN_ALARM, ln_coin_tail};
+use super::coarse;
 use super::tell::{Outcome, found, limit, value};
 use super::view::{CHANNELS, View};
 use crate::diagnose::catalogue::Card;
@@ -125,7 +126,7 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let overshoots = long.iter().filter(|run| overshoots(view, values, run, sign, top + margin)).count();
     let next = values.iter().filter(|v| (top - 3.5 * step..top - 0.1 * step - 1e-9).contains(&(sign * **v))).count();
     let pile = samples.len() as f64;
-    let fine = noise > 0.5 * step && noise > 0.0;
+    let fine = noise > coarse::LEAST_RATIO * step && noise > 0.0;
     let ln_p = if fine && !long.is_empty() { ln_coin_tail(pile, pile + next as f64) } else { 0.0 };
     let rail = if at_rail(view, channel, top) && samples.len() >= 2 { 15.0 } else { 0.0 };
     let evidence = 15.0 * overshoots as f64 - ln_p + rail;
