@@ -1,5 +1,7 @@
 //! Shapes that detect what the catalogue cannot explain. They are never used to name it.
 
+use std::sync::Arc;
+
 use nalgebra::Vector3;
 
 use super::before;
@@ -59,35 +61,45 @@ pub fn families(twin: &Twin) -> Vec<Family> {
     families
 }
 
-/// Readings that remember motion: `∫ e^(−(t−s)/τ) ω(s) ds`, its size, and the like of its square.
+/// What shapes remember of a rate.
+type Remembered = fn(&Vector3<f64>) -> f64;
+
+/// Readings that remember motion: `∫ e^(−(t−s)/τ) ω(s) ds`, its components' sizes, and its own.
 fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
-    let mut shapes: Vec<(String, std::sync::Arc<Vec<f64>>)> = Vec::new();
-    for tau_s in [2.0, 8.0, 30.0] {
-        for kind in 0..6 {
-            let (axis, unsigned) = (kind % 3, kind >= 3);
-            let value = move |rate: &Vector3<f64>| if unsigned { rate[axis].abs() } else { rate[axis] };
-            let name = if unsigned { format!("|w_{}|", AXES[axis]) } else { format!("w_{}", AXES[axis]) };
-            let (mut sum, mut last_s) = (0.0, 0.0);
-            let filtered = twin
-                .trajectory
-                .moments
-                .iter()
-                .map(|moment| {
-                    let dt_s = moment.t_s - last_s;
-                    last_s = moment.t_s;
-                    sum = sum * (-dt_s / tau_s).exp() + value(&moment.smooth_rate) * dt_s;
-                    sum
-                })
-                .collect();
-            shapes.push((format!("memory of {name} over {tau_s} s"), std::sync::Arc::new(filtered)));
-        }
-    }
+    const TAUS_S: [f64; 3] = [2.0, 8.0, 30.0];
+    // Shapes that belong to axes come first, in threes.
+    const OF_AXES: [(&str, Remembered); 6] = [
+        ("w_x", |w| w.x),
+        ("w_y", |w| w.y),
+        ("w_z", |w| w.z),
+        ("|w_x|", |w| w.x.abs()),
+        ("|w_y|", |w| w.y.abs()),
+        ("|w_z|", |w| w.z.abs()),
+    ];
+    let of_axes = TAUS_S.into_iter().flat_map(|tau_s| OF_AXES.map(|(name, value)| (tau_s, name, value)));
+    let whole = TAUS_S.map(|tau_s| (tau_s, "|w|", (|w| w.norm()) as Remembered));
+    let shapes: Vec<_> = of_axes
+        .chain(whole)
+        .map(|(tau_s, name, value)| (format!("memory of {name} over {tau_s} s"), faded(twin, tau_s, value)))
+        .collect();
     remembered("memory of motion", gyro, &shapes)
+}
+
+/// `∫ e^(−(t−s)/τ) v(s) ds` of a value of the rate.
+fn faded(twin: &Twin, tau_s: f64, value: Remembered) -> Arc<Vec<f64>> {
+    let (mut sum, mut last_s) = (0.0, 0.0);
+    let filtered = twin.trajectory.moments.iter().map(|moment| {
+        let dt_s = moment.t_s - last_s;
+        last_s = moment.t_s;
+        sum = sum * (-dt_s / tau_s).exp() + value(&moment.smooth_rate) * dt_s;
+        sum
+    });
+    Arc::new(filtered.collect())
 }
 
 /// Readings that come late in part, as of a body that creeps: `ṡ = (f − s)/τ`, settled at the start.
 fn memory_of_force(twin: &Twin, gyro: bool) -> Family {
-    let mut shapes: Vec<(String, std::sync::Arc<Vec<f64>>)> = Vec::new();
+    let mut shapes: Vec<(String, Arc<Vec<f64>>)> = Vec::new();
     for tau_s in [3.0, 12.0, 50.0] {
         for (axis, letter) in AXES.iter().enumerate() {
             let (mut settled, mut last_s) = (None, 0.0);
@@ -99,14 +111,14 @@ fn memory_of_force(twin: &Twin, gyro: bool) -> Family {
                 settled = Some(value);
                 value
             });
-            shapes.push((format!("memory of f_{letter} over {tau_s} s"), std::sync::Arc::new(filtered.collect())));
+            shapes.push((format!("memory of f_{letter} over {tau_s} s"), Arc::new(filtered.collect())));
         }
     }
     remembered("memory of force", gyro, &shapes)
 }
 
 /// Each shape, a value a sample, on each channel of a triad.
-fn remembered(name: &str, gyro: bool, shapes: &[(String, std::sync::Arc<Vec<f64>>)]) -> Family {
+fn remembered(name: &str, gyro: bool, shapes: &[(String, Arc<Vec<f64>>)]) -> Family {
     let first = if gyro { 0 } else { 3 };
     let unit = if gyro { DPS } else { 1e-3 * G };
     let (mut members, mut influences) = (Vec::new(), Vec::new());
