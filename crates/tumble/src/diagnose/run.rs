@@ -25,7 +25,7 @@ const LEAST_POSES: usize = 4;
 const POSE_RAD: f64 = 0.52;
 
 /// Found by gates, and yet no distortion of the samples: the physics is to be searched as ever.
-const HARMLESS: [&str; 4] = ["vibration_line", "table_rocking", "spin_axis_wobble", "incomplete_turn"];
+const HARMLESS: [&str; 3] = ["vibration_line", "spin_axis_wobble", "incomplete_turn"];
 
 /// What may be asked for.
 #[derive(Clone, Debug, Default)]

@@ -10,7 +10,7 @@
 //! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
 //! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates'
-//! scatter, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
+//! scatter from 4 to 15 Hz, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
 //! Where rounding hides the noise (σ < 0.35 steps) it makes lines of its own: such a triad is passed over.
 //!
 //! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
@@ -92,17 +92,15 @@ pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) 
     let none = |why: &str| Outcome { limit: untestable(&CARD, "mg", why), ..Outcome::default() };
     let Some(spectra) = spectra else { return none("no rest on something solid that is long enough") };
     let test = Test::new(spectra);
-    let but = if trembling(view, spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
+    let but = if trembling(spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
     let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
     let mut outcome = Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
     let rounded = |triad: usize| {
         let axes = 3 * triad..3 * triad + 3;
         median(axes.map(|c| view.sigma[c] / view.step[c].max(1e-12)).collect()) < 0.45
     };
-    let lines: Vec<Line> = (0..2)
-        .filter(|triad| !rounded(*triad))
-        .filter_map(|triad| line(view, spectra, &test, triad, rocking_hz))
-        .collect();
+    let lines: Vec<Line> =
+        (0..2).filter(|triad| !rounded(*triad)).filter_map(|triad| line(spectra, &test, triad, rocking_hz)).collect();
     let Some(strongest) = lines.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p)) else { return outcome };
     let mut parameters = Vec::new();
     let (mut mask, mut sharpest) = (0, 0.0_f64);
@@ -127,8 +125,8 @@ fn least_hz(spectra: &Spectra) -> f64 {
     LEAST_HZ.max(5.0 * spectra.resolution_hz)
 }
 
-fn line(view: &View, spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -> Option<Line> {
-    let trembling = trembling(view, spectra);
+fn line(spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -> Option<Line> {
+    let trembling = trembling(spectra);
     let hidden = |hz: f64| {
         (trembling && hz < TREMOR_HZ)
             || rocking_hz.is_some_and(|rocking| (hz - rocking).abs() < 2.0 * spectra.resolution_hz)
@@ -146,15 +144,18 @@ fn line(view: &View, spectra: &Spectra, test: &Test, triad: usize, rocking_hz: O
 }
 
 /// Whether a hand holds the box.
-pub fn trembling(view: &View, spectra: &Spectra) -> bool {
-    let noise = |low_hz: f64, high_hz: f64| {
-        // The lower quartile: a line's own skirts are not to be taken for a hand.
+pub fn trembling(spectra: &Spectra) -> bool {
+    let powers = |low_hz: f64, high_hz: f64| {
         let bins = spectra.bin(low_hz)..spectra.bin(high_hz);
-        quantile(&mut bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>(), 0.25)
+        bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>()
     };
+    // The lower quartile: a line's own skirts are not to be taken for a hand.
+    let noise = |low_hz: f64, high_hz: f64| quantile(&mut powers(low_hz, high_hz), 0.25);
+    // Of one axis; what is slower than a hand's sway may be the table.
+    let scatter = (powers(SWAY_HZ.start, TREMOR_HZ).iter().sum::<f64>() / (3.0 * spectra.cross.len() as f64)).sqrt();
     let calm = noise(CALM_HZ.start, CALM_HZ.end);
     let (sways, trembles) = (noise(SWAY_HZ.start, SWAY_HZ.end), noise(SWAY_HZ.end, TREMOR_HZ));
-    median(view.sigma[..3].to_vec()) > TREMBLING_DPS || sways.max(trembles) > TREMBLING * calm
+    scatter > TREMBLING_DPS || sways.max(trembles) > TREMBLING * calm
 }
 
 /// Noise of each axis about a bin.

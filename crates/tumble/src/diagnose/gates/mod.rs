@@ -129,7 +129,7 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
     let spectra = Spectra::new(&view);
-    let rocking = rocking::examine(&view, spectra.as_ref().is_some_and(|spectra| line::trembling(&view, spectra)));
+    let rocking = rocking::examine(&view, spectra.as_ref().is_some_and(line::trembling));
     let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
     let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
