@@ -16,6 +16,7 @@ pub mod six_face;
 pub mod start;
 pub mod state;
 pub mod sums;
+pub mod turn_noise;
 pub mod two_step;
 pub mod walk;
 pub mod wobble;

@@ -13,7 +13,8 @@ use super::group::Group;
 use super::model::{self, Nominal, Observation};
 use super::noise::Noise;
 use super::state::Block;
-use super::sums::{Excess, SegmentNoise, Sums};
+use super::sums::{SegmentNoise, Sums};
+use super::turn_noise::TurnNoise;
 use super::wobble::Wobble;
 use crate::face::Face;
 use crate::tape::{Exclusion, Kind, Record, Segment, Tape};
@@ -68,8 +69,8 @@ pub struct Walk<const S: usize> {
     visit: Option<Visit>,
     group: Group,
     /// How much noisier its readings are than they are taken to be.
-    turn_noise: Excess,
-    /// What the last pass's turns had in common of that: see [`Pool::prior`](super::sums::Pool::prior).
+    turn_noise: TurnNoise,
+    /// What the last pass's turns had in common of that: see [`Pool::prior`](super::turn_noise::Pool::prior).
     turn_prior: Option<(f32, f32)>,
     /// Groups of this turn since the plate was last looked at.
     unplated: u16,
@@ -128,7 +129,7 @@ impl<const S: usize> Walk<S> {
             chains: 0,
             visit: None,
             group: Group::default(),
-            turn_noise: Excess::default(),
+            turn_noise: TurnNoise::default(),
             turn_prior: None,
             unplated: 0,
             last_rest_us: 0,
@@ -155,7 +156,7 @@ impl<const S: usize> Walk<S> {
         (self.nominal, self.now, self.time_s) = (nominal, nominal, 0.0);
         (self.segment, self.record, self.chains, self.unplated) = (0, 0, 0, 0);
         (self.attitude, self.visit, self.hinge) = (UnitQuaternion::identity(), None, None);
-        (self.group, self.turn_noise) = (Group::default(), Excess::default());
+        (self.group, self.turn_noise) = (Group::default(), TurnNoise::default());
         (self.last_rest_us, self.move_s, self.level_variance) = (0, 0.0, 0.0);
     }
 
@@ -200,7 +201,7 @@ impl<const S: usize> Walk<S> {
         let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
         self.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
         self.group = Group::default();
-        self.turn_noise = Excess::default();
+        self.turn_noise = TurnNoise::default();
         self.unplated = 0;
         if segment.is_usable_still() {
             self.enter_still(tape, segment, noise);
@@ -278,7 +279,7 @@ impl<const S: usize> Walk<S> {
             let variance = noise.force_density / group.seconds * own.force_scale;
             let rounding = noise.force_rounding * segment.duration_s() / group.seconds;
             let innovations = group.observe(&mut self.filter, self.gravity, variance + rounding);
-            innovations.iter().for_each(|innovation| self.turn_noise.take(innovation, variance));
+            self.turn_noise.take(&innovations, variance);
             self.plate_in_turn(segment, &group, noise);
         }
     }
@@ -354,17 +355,14 @@ impl<const S: usize> Walk<S> {
         }
     }
 
-    /// In logarithms, the turn's own factor between what the turns of the last pass had in common and what it shows itself.
+    /// The turn's own factor between what the turns of the last pass had in common and what it shows itself; never quieter than rest.
     fn learn_turn_noise(&mut self) {
-        let Some((excess, sigma)) = self.turn_noise.value().filter(|_| self.adapting) else { return };
+        let Some((excess, variance)) = self.turn_noise.value().filter(|_| self.adapting) else { return };
         let scale = &mut self.noise[self.segment].force_scale;
-        // A turn of ten seconds knows its factor to a sixth; a tenth is far off, where the logarithm is no longer straight.
-        let own = (1.0 + excess).max(0.1);
-        let (value, variance) = (libm::logf(*scale * own), sigma * sigma / (own * own));
+        let (value, variance) = (*scale * (1.0 + excess), *scale * *scale * variance);
         self.sums.turn_noise.take(value, variance);
-        let (mean, apart) = self.turn_prior.unwrap_or((value, f32::INFINITY));
-        let share = if apart < f32::INFINITY { apart / (apart + variance) } else { 1.0 };
-        *scale = libm::expf(mean + share * (value - mean) + 0.5 * share * variance).clamp(1.0, 1e6);
+        let (mean, apart) = self.turn_prior.unwrap_or((value, 0.0));
+        *scale = (mean + apart / (apart + variance) * (value - mean)).clamp(1.0, 1e6);
     }
 
     /// A pivot's estimate has variance `σ² − P` if pivots have variance σ², P being what is left of it.
