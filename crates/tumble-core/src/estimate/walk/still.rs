@@ -105,10 +105,11 @@ impl<const S: usize> Walk<S> {
         if !self.facets.admits(&normal) {
             return;
         }
-        if self.visit.is_none_or(|visit| visit.face != face) {
-            // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
-            let to_n = self.attitude.to_rotation_matrix().into_inner();
-            self.facets.take(&face.normal(), &normal, &to_n, self.level_variance);
+        let anew = self.visit.is_none_or(|visit| visit.face != face);
+        // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
+        let to_n = self.attitude.to_rotation_matrix().into_inner();
+        self.facets.take(anew, &face.normal(), &to_n, self.level_variance);
+        if anew {
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
         let plane = face.plane().map(|axis| self.attitude * axis);
