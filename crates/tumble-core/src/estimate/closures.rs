@@ -63,8 +63,7 @@ impl Closures {
     }
 
     /// Mean of the posterior, rad²; none without closures. `scales`: of each axis the filter's estimate of `k` and its variance, found
-    /// with the variance in force. The prior of a closure of variance `2v + a` is Jeffreys', `1/(2v + a)`: uniform over the logarithm of
-    /// what stands above the gyroscope's noise, nothing for what would be lost in it (Tiao & Tan 1965).
+    /// with the variance in force. A closure of variance `2v + a` is seen beside `a/2`.
     pub fn variance(&self, stops: TurnStops, scales: &[(f32, f32); 3]) -> Option<f32> {
         let range = if stops == TurnStops::Fenced { FENCED } else { BY_HAND };
         let gravity: [(f32, f32); 3] = core::array::from_fn(|axis| {
@@ -79,16 +78,11 @@ impl Closures {
         });
         let first = range.start;
         let grid = variances().skip(first).take(range.len());
-        let noise = self.noise / self.count;
-        let prior = |variance: f32| variance / (2.0 * variance + noise);
+        let noise = 0.5 * self.noise / self.count;
         // A fence that is exact is as likely as one that is not; a hand is never.
-        let exact = if stops == TurnStops::Fenced { grid.clone().map(prior).sum::<f32>() } else { 0.0 };
-        (self.count > 0.5).then(|| {
-            mean_variance(grid, 1.0, |index, variance| {
-                let prior = prior(variance) + if index == 0 { exact } else { 0.0 };
-                self.grid[first + index].log_likelihood(&gravity) + libm::logf(prior)
-            })
-        })
+        let exact = if stops == TurnStops::Fenced { 1.0 } else { 0.0 };
+        (self.count > 0.5)
+            .then(|| mean_variance(grid, noise, exact, |index, _| self.grid[first + index].log_likelihood(&gravity)))
     }
 }
 

@@ -104,6 +104,6 @@ impl Facets {
         let likeliest = (squares / freedom - noise).max(0.0);
         let certain = 2.0 * (log(likeliest) - log(0.0)) > CERTAIN;
         let grid = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
-        Some((mean_variance(grid, (GRID - 1) as f32, |_, variance| log(variance)), certain))
+        Some((mean_variance(grid, noise, 1.0, |_, variance| log(variance)), certain))
     }
 }

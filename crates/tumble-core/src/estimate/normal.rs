@@ -53,10 +53,18 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// A posterior over a logarithmic grid of variances, each step a factor of two, under a prior that is uniform over it but for the least
-/// value, which counts `least` times: as many as all the others together where there may as well be nothing at all (Jeffreys 1961).
-/// Its mean, and not its peak, is what variances of other things are made of: these are linear in it.
-pub fn mean_variance(grid: impl Iterator<Item = f32>, least: f32, log_likelihood: impl Fn(usize, f32) -> f32) -> f32 {
+/// The mean of the posterior of a variance v over a logarithmic grid, each step a factor of two. What is seen has the variance `v + noise`,
+/// and the prior is Jeffreys' for that, `dv/(v + noise)`: uniform over the logarithm of what stands above the noise, and nothing
+/// for what is lost in it (Tiao & Tan 1965). Where there may as well be nothing at all, `nothing` times as much as all of this stands on the
+/// least value besides. The mean, and not the peak, is what variances of other things are made of: these are linear in it.
+pub fn mean_variance(
+    grid: impl Iterator<Item = f32> + Clone,
+    noise: f32,
+    nothing: f32,
+    log_likelihood: impl Fn(usize, f32) -> f32,
+) -> f32 {
+    let prior = |variance: f32| variance / (variance + noise);
+    let least = nothing * grid.clone().map(prior).sum::<f32>();
     let (mut best, mut weights, mut sum) = (f32::NEG_INFINITY, 0.0f32, 0.0f32);
     for (index, variance) in grid.enumerate() {
         let log = log_likelihood(index, variance);
@@ -66,7 +74,7 @@ pub fn mean_variance(grid: impl Iterator<Item = f32>, least: f32, log_likelihood
             sum *= scale;
             best = log;
         }
-        let weight = libm::expf(log - best) * if index == 0 { least } else { 1.0 };
+        let weight = libm::expf(log - best) * (prior(variance) + if index == 0 { least } else { 0.0 });
         weights += weight;
         sum += weight * variance;
     }
@@ -95,7 +103,7 @@ mod tests {
     fn the_mean_is_the_posteriors() {
         let (n, v) = (10.0, 1e-6f32);
         let grid = (0..24).map(|k| 1e-9 * libm::exp2f(k as f32));
-        let mean = mean_variance(grid, 1.0, |_, x| -0.5 * n * (libm::logf(x) + v / x));
+        let mean = mean_variance(grid, 0.0, 0.0, |_, x| -0.5 * n * (libm::logf(x) + v / x));
         assert!((mean / (v * n / (n - 2.0)) - 1.0).abs() < 0.02, "{mean}");
     }
 }

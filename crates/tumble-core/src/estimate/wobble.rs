@@ -16,8 +16,6 @@ pub const UNSEEN: f32 = DEGREE_RAD;
 /// Least sigma, rad: 0.5 µm on 5 cm. The grid grows by √2 a step from there, to 3.3°.
 const LEAST: f32 = 10e-6;
 const GRID: usize = 26;
-/// A box as often as not turns without any wobble that shows: the least sigma has half of the prior.
-const NOTHING: f32 = (GRID - 1) as f32;
 
 /// Sums over a pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,22 +28,27 @@ pub struct Wobble {
 #[derive(Clone, Copy, Debug, Default)]
 struct Likelihood {
     costs: [f32; GRID],
-    any: bool,
+    /// Their number, and the sum of what they are known by, 1/rad².
+    count: f32,
+    information: f32,
 }
 
 impl Likelihood {
     /// A value of variance `v + noise`.
     fn take(&mut self, value: f32, noise: f32) {
+        let noise = noise.max(LEAST * LEAST);
         for (cost, variance) in self.costs.iter_mut().zip(variances()) {
-            let own = variance + noise.max(0.0);
+            let own = variance + noise;
             *cost += libm::logf(own) + value * value / own;
         }
-        self.any = true;
+        self.count += 1.0;
+        self.information += 1.0 / noise;
     }
 
-    /// Mean of the posterior, rad², under a prior uniform over the logarithm; none without data.
+    /// Mean of the posterior, rad²; none without data. A box as often as not turns without any wobble that shows.
     fn mean(&self) -> Option<f32> {
-        self.any.then(|| mean_variance(variances(), NOTHING, |index, _| -0.5 * self.costs[index]))
+        let noise = self.count / self.information;
+        (self.count > 0.5).then(|| mean_variance(variances(), noise, 1.0, |index, _| -0.5 * self.costs[index]))
     }
 }
 
@@ -76,7 +79,7 @@ impl Wobble {
     }
 }
 
-fn variances() -> impl Iterator<Item = f32> {
+fn variances() -> impl Iterator<Item = f32> + Clone {
     (0..GRID).map(|step| LEAST * LEAST * libm::exp2f(step as f32))
 }
 
