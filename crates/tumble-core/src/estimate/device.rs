@@ -268,8 +268,10 @@ impl<const S: usize> Estimator<S> {
             return true;
         }
         let Some(middle) = median(&mut hinges) else { return true };
-        // A median's standard error is 1/(2 f √n), and the density f of χ²₂ at its median is 1/4.
-        let certain = middle > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
+        // The share of χ²₂ below the median of n is ½ in the mean, with a variance of 1/(4 (n + 2)). (The median itself is far from
+        // normal: a limit on it that should be passed once in a hundred sessions was passed in three.)
+        let below = 1.0 - libm::expf(-0.5 * middle);
+        let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges.len() as f32 + 2.0);
         let excess = match self.noise.motion_scale > 1.0 || certain {
             true => (middle / 1.386).max(1.0 / self.noise.motion_scale),
             false => 1.0,
