@@ -8,6 +8,7 @@ pub mod facets;
 pub mod filter;
 pub mod group;
 pub mod judge;
+pub mod likelihood;
 pub mod model;
 pub mod noise;
 pub mod normal;

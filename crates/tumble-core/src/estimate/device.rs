@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::facets::SQUARE;
 use super::model::Nominal;
-use super::noise::Noise;
+use super::noise::{Noise, PIVOT_FLOOR};
 use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
@@ -210,8 +210,8 @@ impl<const S: usize> Estimator<S> {
         if let Some((excess, _)) = sums.force_walk.value().filter(|_| force || self.noise.has_force_walk()) {
             self.noise.set_force_walk(self.noise.force_walk + excess);
         }
-        if let Some((excess, _)) = sums.pivot.value() {
-            self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
+        if let Some(variance) = sums.pivot.mean(PIVOT_FLOOR) {
+            self.noise.pivot_sigma_m = libm::sqrtf(variance);
         }
         self.settle();
         let steady = self.scale_motion();

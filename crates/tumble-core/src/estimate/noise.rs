@@ -27,11 +27,11 @@ const SHORTEST_S: f32 = 2.0;
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
 /// What a stop against a fence is taken for before its innovations are seen.
 const FENCED: f32 = 0.05 * DEGREE_RAD;
-/// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least and most
-/// that is believed of it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
+/// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least that is believed of
+/// it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
 const PIVOT: f32 = 5e-3;
-const PIVOT_FLOOR: f32 = 50e-6;
-const PIVOT_CAP: f32 = 0.05;
+/// See [`PIVOT`].
+pub const PIVOT_FLOOR: f32 = 50e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
@@ -165,11 +165,6 @@ impl Noise {
     /// Likewise for the accelerometer.
     pub fn set_force_walk(&mut self, found: f32) {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
-    }
-
-    /// Pivot variance from what turns estimated of it, m².
-    pub fn set_pivot_variance(&mut self, found: f32) {
-        self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
     /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the

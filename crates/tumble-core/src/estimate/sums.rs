@@ -1,6 +1,7 @@
 //! What a pass's innovations say of the noise.
 
 use super::filter::Innovation;
+use super::likelihood::Likelihood;
 use super::turn_noise::Pool;
 
 /// What a pass learns about a segment, carried into the next.
@@ -27,7 +28,7 @@ pub struct Sums {
     /// Turns: the noise of the specific force.
     pub turn_noise: Pool,
     /// Turns: the pivot's variance.
-    pub pivot: Excess,
+    pub pivot: Likelihood,
     /// Closure residuals, rad² and count.
     pub closed: (f32, f32),
 }

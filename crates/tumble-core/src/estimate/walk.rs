@@ -8,10 +8,10 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::closures::Closures;
 use super::drift::Drift;
 use super::facets::Facets;
-use super::filter::{Filter, Innovation};
+use super::filter::Filter;
 use super::group::Group;
 use super::model::{self, Nominal, Observation};
-use super::noise::Noise;
+use super::noise::{Noise, PIVOT_FLOOR};
 use super::state::Block;
 use super::sums::{SegmentNoise, Sums};
 use super::turn_noise::TurnNoise;
@@ -365,16 +365,11 @@ impl<const S: usize> Walk<S> {
         *scale = (mean + apart / (apart + variance) * (value - mean)).clamp(1.0, 1e6);
     }
 
-    /// A pivot's estimate has variance `σ² − P` if pivots have variance σ², P being what is left of it.
     fn learn_pivot(&mut self, noise: &Noise) {
         let prior = noise.pivot_sigma_m * noise.pivot_sigma_m;
         for index in Block::Pivot.range() {
-            let expected = prior - self.filter.covariance()[(index, index)];
-            // A component along the axis learns nothing, and nothing is learnt from it.
-            if expected > 0.1 * prior {
-                let innovation = Innovation { value: self.filter.state()[index], variance: expected };
-                self.sums.pivot.take(&innovation, expected / prior);
-            }
+            let (mean, variance) = (self.filter.state()[index], self.filter.covariance()[(index, index)]);
+            self.sums.pivot.take_state(mean, variance, prior, f32::INFINITY, PIVOT_FLOOR);
         }
     }
 }
