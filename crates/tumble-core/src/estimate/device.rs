@@ -227,13 +227,24 @@ impl<const S: usize> Estimator<S> {
             self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
         }
         // The start is 20 mrad off, which is no box's fault; the first pass leaves its square, 0.4 mrad.
+        let shear = self.shear_variance();
         if self.passes > 1
             && let Some(sigma) = &mut self.noise.facet_sigma_rad
         {
-            let (found, crooked) = self.walk.facets.variance().unwrap_or((SQUARE * SQUARE, false));
+            let (found, crooked) = self.walk.facets.variance(*sigma, shear).unwrap_or((SQUARE * SQUARE, false));
             damp(sigma, libm::sqrtf(found), &mut self.facet_step);
             self.noise.crooked = crooked;
         }
+    }
+
+    /// Variance of one component of the accelerometer's shear, `(A_ij + A_ji)/2`, in the mean over the three, 1.
+    fn shear_variance(&self) -> f32 {
+        let covariance = self.walk.filter.covariance();
+        let at = |i: usize, j: usize| Block::AccelCorrection.start() + 3 * i + j;
+        [(0, 1), (0, 2), (1, 2)].into_iter().fold(0.0, |sum, (i, j)| {
+            let (a, b) = (at(i, j), at(j, i));
+            sum + (covariance[(a, a)] + covariance[(b, b)] + 2.0 * covariance[(a, b)]).max(0.0) / 12.0
+        })
     }
 
     /// Both parts of a wobble, and stops. A plate or a fence believed less shows smaller residuals, and then is believed more: where

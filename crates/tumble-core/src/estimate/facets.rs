@@ -16,6 +16,9 @@ const GRID: usize = 25;
 /// Twice the logarithm of the likelihood's ratio from which a box is said not to be square: ½χ²₁ exceeds it once in a thousand
 /// sessions.
 const CERTAIN: f32 = 9.55;
+/// Unknowns: table 2 and frame 3, then shear 3.
+const TABLE_AND_FRAME: usize = 5;
+const UNKNOWNS: usize = 8;
 
 /// No table leans by more than this, and no face by more from the first one, 1 (10° and 6°): what does is no face on a table.
 pub const LEANING: f32 = 0.17;
@@ -91,19 +94,36 @@ impl Facets {
 
     /// Mean of the posterior of a face's variance, rad², a square box being as likely as a crooked one before, and whether it is certain
     /// that faces err at all. Faces that err by less than the rests' levels are known (0.02° is 200 µrad, a rest of 2.5 s knows 130) are not
-    /// told from square ones for certain; their variance is believed by the odds.
-    pub fn variance(&self) -> Option<(f32, bool)> {
+    /// told from square ones for certain; their variance is believed by the odds. `sigma` is a face's in force, `shear` the filter's variance of
+    /// the nominal's shear, 1.
+    ///
+    /// What is not the plate's of the information on shear stays the shear's prior, be it a hundredth: what is told by less than that
+    /// is lost in `f32`, and a direction of table, frame and shear together is told by almost nothing.
+    pub fn variance(&self, sigma: f32, shear: f32) -> Option<(f32, bool)> {
         let mut all = *self;
         all.end_visit();
-        let freedom = all.count - all.normal.eliminate(8) as f32;
-        if freedom < 1.0 {
+        let noise = all.noise / all.count;
+        if all.count - (all.normal.clone().eliminate(TABLE_AND_FRAME).0 as f32) < 1.0 {
             return None;
         }
-        let (squares, noise) = (all.normal.at(8, 8), all.noise / all.count);
-        let log = |variance: f32| -0.5 * (freedom * libm::logf(noise + variance) + squares / (noise + variance));
-        let likeliest = (squares / freedom - noise).max(0.0);
-        let certain = 2.0 * (log(likeliest) - log(0.0)) > CERTAIN;
-        let grid = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
-        Some((mean_variance(grid, noise, 1.0, |_, variance| log(variance)), certain))
+        let prior = (1.0 / shear - 4.0 / (noise + sigma * sigma)).max(0.01 / shear);
+        let variances = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
+        let mut logs = [0.0f32; GRID];
+        for (log, variance) in logs.iter_mut().zip(variances.clone()) {
+            *log = all.log_likelihood(noise + variance, prior);
+        }
+        let best = logs.iter().fold(f32::NEG_INFINITY, |best, log| best.max(*log));
+        let certain = 2.0 * (best - logs[0]) > CERTAIN;
+        Some((mean_variance(variances, noise, 1.0, |index, _| logs[index]), certain))
+    }
+
+    /// Of a variance of each number, where `prior` is known of the shear.
+    fn log_likelihood(&self, variance: f32, prior: f32) -> f32 {
+        let mut normal = self.normal;
+        let sigma = 1.0 / libm::sqrtf(variance * prior);
+        (TABLE_AND_FRAME..UNKNOWNS).for_each(|shear| normal.expect(shear, sigma));
+        let (rank, log_determinant) = normal.eliminate(UNKNOWNS);
+        let squares = normal.at(UNKNOWNS, UNKNOWNS) / variance;
+        -0.5 * ((self.count - rank as f32) * libm::logf(variance) + log_determinant + squares)
     }
 }

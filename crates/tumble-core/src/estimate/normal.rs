@@ -28,9 +28,10 @@ impl<const N: usize> Normal<N> {
         self.sums[unknown][unknown] += 1.0 / (sigma * sigma);
     }
 
-    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all.
-    pub fn eliminate(&mut self, count: usize) -> usize {
-        let mut rank = 0;
+    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all, and the logarithm of these ones'
+    /// determinant.
+    pub fn eliminate(&mut self, count: usize) -> (usize, f32) {
+        let (mut rank, mut log_determinant) = (0, 0.0);
         let own: [f32; N] = core::array::from_fn(|index| self.sums[index][index]);
         for pivot in 0..count {
             let row = self.sums[pivot];
@@ -39,12 +40,13 @@ impl<const N: usize> Normal<N> {
                 continue;
             }
             rank += 1;
+            log_determinant += libm::logf(row[pivot]);
             for (index, sums) in self.sums.iter_mut().enumerate().skip(pivot + 1) {
                 let share = row[index] / row[pivot];
                 sums.iter_mut().zip(&row).for_each(|(sum, value)| *sum -= share * value);
             }
         }
-        rank
+        (rank, log_determinant)
     }
 
     /// An element.
@@ -92,7 +94,7 @@ mod tests {
         for (x, y) in [(0.0, 1.0), (1.0, 3.1), (2.0, 4.9), (3.0, 7.0)] {
             normal.take(&[1.0, x, y], 4.0);
         }
-        assert_eq!(normal.eliminate(1), 1);
+        assert_eq!(normal.eliminate(1), (1, libm::logf(16.0)));
         assert!((normal.at(1, 2) / normal.at(1, 1) - 1.98).abs() < 1e-5);
         assert!((normal.at(1, 1) - 4.0 * 5.0).abs() < 1e-5);
         assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.018).abs() < 1e-3, "{}", normal.at(2, 2));
