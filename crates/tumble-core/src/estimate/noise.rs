@@ -7,6 +7,7 @@ use super::drift::Slope;
 use super::facets::SQUARE;
 use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
+use crate::motion::grain::SOLID;
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Kind, Segment, Tape};
@@ -211,10 +212,9 @@ fn lengths<const R: usize, const S: usize>(tape: &Tape<R, S>, quiet_variance: f3
     (solid_s, parts / visits.max(1.0))
 }
 
-/// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which
-/// by chance alone happens to less than one still in a million (100 independent values: χ²₁₀₀/100 > 2).
+/// A rest on something solid, as against one in the hand.
 pub fn is_solid(segment: &Segment, quiet_variance: f32) -> bool {
-    matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= 2.0 * quiet_variance)
+    matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= SOLID * quiet_variance)
 }
 
 /// Densities of one still, from the differences of neighbouring half-second means.
