@@ -1,6 +1,8 @@
 //! What a pass's innovations say of the noise.
 
 use super::filter::Innovation;
+use super::likelihood::Likelihood;
+use super::turn_noise::Pool;
 
 /// What a pass learns about a segment, carried into the next.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +28,7 @@ pub struct Sums {
     /// Turns: the noise of the specific force.
     pub turn_noise: Pool,
     /// Turns: the pivot's variance.
-    pub pivot: Excess,
+    pub pivot: Likelihood,
     /// Closure residuals, rad² and count.
     pub closed: (f32, f32),
 }
@@ -36,39 +38,6 @@ fn chi_square_over_dof(freedom: f32, quantile: f32) -> f32 {
     let spread = 2.0 / (9.0 * freedom);
     let root = 1.0 - spread + quantile * libm::sqrtf(spread);
     root * root * root
-}
-
-/// What turns say of how much noisier than rest the specific force is while they last: the logarithm of each turn's own factor, with its
-/// variance. Turns that agree have one factor, known twelve times as well; those that do not are drawn to the mean by what they are
-/// known worse than they differ (DerSimonian & Laird 1986).
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Pool {
-    weight: f32,
-    weights_squared: f32,
-    sum: f32,
-    squares: f32,
-    count: f32,
-}
-
-impl Pool {
-    /// A turn's.
-    pub fn take(&mut self, value: f32, variance: f32) {
-        let weight = 1.0 / variance;
-        self.weight += weight;
-        self.weights_squared += weight * weight;
-        self.sum += weight * value;
-        self.squares += weight * value * value;
-        self.count += 1.0;
-    }
-
-    /// Mean over turns, and the variance by which they differ; none of a single turn.
-    pub fn prior(&self) -> Option<(f32, f32)> {
-        (self.count > 1.5).then(|| {
-            let mean = self.sum / self.weight;
-            let excess = self.squares - self.sum * mean - (self.count - 1.0);
-            (mean, (excess / (self.weight - self.weights_squared / self.weight)).max(0.0))
-        })
-    }
 }
 
 /// Innovations that should have variance `S + c q` for an unknown q: the method of moments, weighted as maximum
