@@ -18,7 +18,8 @@ use super::filter::Innovation;
 /// What one turn's innovations say.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TurnNoise {
-    numerator: f32,
+    squares: f32,
+    neighbours: f32,
     denominator: f32,
     last: Option<[Innovation; 3]>,
 }
@@ -30,15 +31,18 @@ impl TurnNoise {
         for (axis, now) in innovations.iter().enumerate() {
             let share = variance / now.variance;
             let neighbours = self.last.map_or(0.0, |last| last[axis].value * now.value / last[axis].variance);
-            self.numerator += share * (now.nis() - 1.0 + neighbours);
+            self.squares += share * (now.nis() - 1.0);
+            self.neighbours += share * neighbours;
             self.denominator += share * share;
         }
         self.last = Some(*innovations);
     }
 
-    /// q, and its variance: ν² has 2 S², ν ν₋ has S². None without data.
+    /// q, and its variance: ν² has 2 S², ν ν₋ has S². Neighbours only ever take back: where they are alike it is no tremor but a misfit,
+    /// which is not of the specific force alone. None without data.
     pub fn value(&self) -> Option<(f32, f32)> {
-        (self.denominator > 0.0).then(|| (self.numerator / self.denominator, 3.0 / self.denominator))
+        let sum = self.squares + self.neighbours.min(0.0);
+        (self.denominator > 0.0).then(|| (sum / self.denominator, 3.0 / self.denominator))
     }
 }
 

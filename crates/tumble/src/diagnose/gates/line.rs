@@ -32,6 +32,8 @@ const TREMBLING_DPS: f64 = 0.3;
 /// Where there is none of it, for comparison.
 const CALM_HZ: std::ops::Range<f64> = 16.0..30.0;
 const TREMBLING: f64 = 1.5;
+/// Resolutions to either side that a rocking table's power reaches: it is a thousand times the noise and more.
+const SKIRTS: f64 = 5.0;
 /// Bend of a smooth spectrum over the bins that the floor is taken from.
 const BEND: f64 = 1.05;
 /// ln of how many directions stand for all, and cos² of how far any is from the next.
@@ -92,7 +94,7 @@ pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) 
     let none = |why: &str| Outcome { limit: untestable(&CARD, "mg", why), ..Outcome::default() };
     let Some(spectra) = spectra else { return none("no rest on something solid that is long enough") };
     let test = Test::new(spectra);
-    let but = if trembling(spectra) { " but below 15 Hz, where a hand trembles" } else { "" };
+    let but = if Hand::of(spectra).holds() { " but below 15 Hz, where a hand trembles" } else { "" };
     let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
     let mut outcome = Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
     let rounded = |triad: usize| {
@@ -126,10 +128,10 @@ fn least_hz(spectra: &Spectra) -> f64 {
 }
 
 fn line(spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -> Option<Line> {
-    let trembling = trembling(spectra);
+    let held = Hand::of(spectra).holds();
     let hidden = |hz: f64| {
-        (trembling && hz < TREMOR_HZ)
-            || rocking_hz.is_some_and(|rocking| (hz - rocking).abs() < 2.0 * spectra.resolution_hz)
+        (held && hz < TREMOR_HZ)
+            || rocking_hz.is_some_and(|rocking| (hz - rocking).abs() < SKIRTS * spectra.resolution_hz)
     };
     let first = spectra.bin(least_hz(spectra));
     let mut best: Option<Line> = None;
@@ -143,19 +145,37 @@ fn line(spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -
     best
 }
 
-/// Whether a hand holds the box.
-pub fn trembling(spectra: &Spectra) -> bool {
-    let powers = |low_hz: f64, high_hz: f64| {
-        let bins = spectra.bin(low_hz)..spectra.bin(high_hz);
-        bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>()
-    };
-    // The lower quartile: a line's own skirts are not to be taken for a hand.
-    let noise = |low_hz: f64, high_hz: f64| quantile(&mut powers(low_hz, high_hz), 0.25);
-    // Of one axis; what is slower than a hand's sway may be the table.
-    let scatter = (powers(SWAY_HZ.start, TREMOR_HZ).iter().sum::<f64>() / (3.0 * spectra.cross.len() as f64)).sqrt();
-    let calm = noise(CALM_HZ.start, CALM_HZ.end);
-    let (sways, trembles) = (noise(SWAY_HZ.start, SWAY_HZ.end), noise(SWAY_HZ.end, TREMOR_HZ));
-    scatter > TREMBLING_DPS || sways.max(trembles) > TREMBLING * calm
+/// What shows that a hand holds the box.
+#[derive(Clone, Copy, Default)]
+pub struct Hand {
+    /// From 4 to 6 Hz. A table that rocks at 2 Hz for a rest of two seconds reaches there too.
+    pub sways: bool,
+    /// From 6 to 15 Hz.
+    pub trembles: bool,
+}
+
+impl Hand {
+    /// By the gyroscope's noise.
+    pub fn of(spectra: &Spectra) -> Self {
+        let powers = |low_hz: f64, high_hz: f64| {
+            let bins = spectra.bin(low_hz)..spectra.bin(high_hz);
+            bins.map(|bin| spectra.cross[bin][0].trace()).collect::<Vec<f64>>()
+        };
+        // The lower quartile: a line's own skirts are not to be taken for a hand.
+        let noise = |low_hz: f64, high_hz: f64| quantile(&mut powers(low_hz, high_hz), 0.25);
+        // Of one axis; what is slower may be the table.
+        let all = powers(SWAY_HZ.start, TREMOR_HZ).iter().sum::<f64>();
+        let scatter = (all / (3.0 * spectra.cross.len() as f64)).sqrt();
+        let asked = TREMBLING * noise(CALM_HZ.start, CALM_HZ.end);
+        Self {
+            sways: noise(SWAY_HZ.start, SWAY_HZ.end) > asked,
+            trembles: scatter > TREMBLING_DPS || noise(SWAY_HZ.end, TREMOR_HZ) > asked,
+        }
+    }
+
+    fn holds(self) -> bool {
+        self.sways || self.trembles
+    }
 }
 
 /// Noise of each axis about a bin.

@@ -129,7 +129,9 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.take(mapped.scale);
     gated.remap = mapped.remap;
     let spectra = Spectra::new(&view);
-    let rocking = rocking::examine(&view, spectra.as_ref().is_some_and(line::trembling));
+    let hand = spectra.as_ref().map(line::Hand::of).unwrap_or_default();
+    // What sways at one frequency alone is a table: that gate sees for itself.
+    let rocking = rocking::examine(&view, hand.trembles);
     let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
     let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
