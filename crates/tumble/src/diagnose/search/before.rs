@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::generic::Family;
+use super::generic::{Family, remembered};
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::influence::{Influence, Push};
@@ -29,22 +29,31 @@ pub(super) fn previous_face(twin: &Twin) -> Family {
     Family { name: "the face before".into(), gyro: false, members, influences }
 }
 
-/// A load of half of gravity shows an axis on which side it lies.
-const SIDE: f64 = 0.5;
+/// From 45° on an axis is loaded more than any other.
+const LOADED: f64 = 0.7;
 
-/// Readings that remember on which side an axis was loaded last, whatever came in between: a relay, the simplest hysteresis.
+/// Readings that remember on which side an axis was loaded last, whatever came in between: a relay, the simplest hysteresis. Until it is
+/// loaded for the first time its side is not known, and has a shape of its own.
 pub(super) fn last_side(twin: &Twin, gyro: bool) -> Family {
-    let mut sides = Vec::new();
     let mut side = Vector3::zeros();
-    for stretch in &twin.stretches {
-        if stretch.is_rest() {
-            let force = twin.trajectory.moments[stretch.samples.start].force / G;
-            side = force.zip_map(&side, |force: f64, side| if force.abs() > SIDE { force.signum() } else { side });
-        }
-        sides.resize(stretch.number + 1, side);
-    }
-    let (members, influences) = by_stretch(sides, if gyro { 0..3 } else { 3..6 }, "last side of ");
-    Family { name: "the side before".into(), gyro, members, influences }
+    let sides: Vec<Vector3<f64>> = twin
+        .trajectory
+        .moments
+        .iter()
+        .map(|moment| {
+            let up = moment.attitude.inverse_transform_vector(&Vector3::z());
+            side = up.zip_map(&side, |up: f64, side| if up.abs() > LOADED { up.signum() } else { side });
+            side
+        })
+        .collect();
+    let shape =
+        |name: String, value: &dyn Fn(&Vector3<f64>) -> f64| (name, Arc::new(sides.iter().map(value).collect()));
+    let known = (0..3).map(|axis| shape(format!("last side of {}", AXES[axis]), &move |side| side[axis]));
+    let unknown = (0..3).map(|axis| {
+        let first = move |side: &Vector3<f64>| if side[axis] == 0.0 { 1.0 } else { 0.0 };
+        shape(format!("before {} was loaded", AXES[axis]), &first)
+    });
+    remembered("the side before", gyro, &known.chain(unknown).collect::<Vec<_>>())
 }
 
 /// A vector that each stretch has, every component of it on each of these channels: 1 °/s or 1 mg per unit.

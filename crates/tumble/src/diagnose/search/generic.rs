@@ -118,7 +118,7 @@ fn memory_of_force(twin: &Twin, gyro: bool) -> Family {
 }
 
 /// Each shape, a value a sample, on each channel of a triad.
-fn remembered(name: &str, gyro: bool, shapes: &[(String, Arc<Vec<f64>>)]) -> Family {
+pub(super) fn remembered(name: &str, gyro: bool, shapes: &[(String, Arc<Vec<f64>>)]) -> Family {
     let first = if gyro { 0 } else { 3 };
     let unit = if gyro { DPS } else { 1e-3 * G };
     let (mut members, mut influences) = (Vec::new(), Vec::new());

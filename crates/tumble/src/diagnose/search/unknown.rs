@@ -87,6 +87,11 @@ fn blocks(bench: &Bench) -> Vec<Block> {
             for (three, on) in (0..per_channel / 3).flat_map(|three| (0..3).map(move |on| (3 * three, on))) {
                 add((0..3).map(|k| k * per_channel + three + (k + on) % 3).collect());
             }
+            // All of them at once, each axis on its own channel.
+            if per_channel > 3 && 3 * (per_channel / 3) <= WIDEST {
+                let own = |k: usize| (0..per_channel / 3).map(move |three| k * per_channel + 3 * three + k);
+                add((0..3).flat_map(own).collect());
+            }
         }
         if family.name == "slow oscillation" {
             for pair in 0..per_channel / 2 {
