@@ -99,8 +99,10 @@ impl<const S: usize> Walk<S> {
             // As many as the tape has segments: there is room.
             let _ = self.noise.push(SegmentNoise { force_scale: scale, rate_scale: 1.0, hinge_nis: f32::NAN });
         }
-        let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
-        self.pass.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
+        let (start_us, end_us) =
+            tape.segments().last().map_or((0, 0), |last| (tape.segments()[0].start_us, last.end_us));
+        self.pass.session_s = (end_us - start_us) as f32 * 1e-6;
+        self.pass.time_s = (segment.start_us - start_us) as f32 * 1e-6 - 0.5 * self.pass.session_s;
         self.pass.group = Group::default();
         self.pass.turn_noise = TurnNoise::default();
         self.pass.unplated = 0;
