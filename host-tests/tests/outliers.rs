@@ -1,6 +1,8 @@
 //! Sessions whose estimate once was wrong by many sigmas, or whose sigmas were ten times too wide: each by its seed.
 
 use host_tests::sim::{Deviation, is_gyro_cross, session, spread};
+use tumble_core::calibration::{Reason, Verdict};
+use tumble_core::estimate::judge::judge;
 use tumble_core::procedure::{BoxFaces, TurnStops};
 use tumble_sim::motion::Stops;
 use tumble_sim::scheme::Imperfection;
@@ -68,4 +70,21 @@ fn no_walk_is_believed_that_is_not_there() {
         let walk = session(&config, TurnStops::Fenced, faces).estimate.noise.force_walk;
         assert!(walk < 1e-7, "{walk:e} (m/s²)²/s");
     }
+}
+
+/// What still moves by more than its sigma is not where its sigma says; what moves by a tenth of it may be used, with a warning.
+#[test]
+fn an_estimate_that_did_not_settle_is_rejected() {
+    let mut session = session(&studied(Scheme::Double, 1, 1, 2), TurnStops::Fenced, BoxFaces::Square);
+    let (judgement, accepted) = judge(&session.estimate, &session.tape, 0);
+    assert!(judgement.verdict == Verdict::Accepted && accepted.is_some(), "{judgement:?}");
+    (session.estimate.converged, session.estimate.moved) = (false, 0.1);
+    let (judgement, accepted) = judge(&session.estimate, &session.tape, 0);
+    assert!(judgement.verdict == Verdict::AcceptedWithWarnings && accepted.is_some(), "{judgement:?}");
+    session.estimate.moved = 27.0;
+    let (judgement, accepted) = judge(&session.estimate, &session.tape, 0);
+    assert!(
+        accepted.is_none() && judgement.reasons.first() == Some(&Reason::Unsettled { sigmas: 27.0 }),
+        "{judgement:?}"
+    );
 }

@@ -84,6 +84,8 @@ pub struct Estimate {
     pub passes: u32,
     /// False if parameters still moved in the last pass.
     pub converged: bool,
+    /// The most that a parameter moved by in the last pass, sigmas.
+    pub moved: f32,
 }
 
 /// The arithmetic broke down at this place.
@@ -330,6 +332,7 @@ impl<const S: usize> Estimator<S> {
                 .collect(),
             passes: self.passes,
             converged,
+            moved: self.largest_move(),
         }
     }
 
