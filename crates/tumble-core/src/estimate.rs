@@ -20,6 +20,7 @@ pub mod sums;
 pub mod turn_noise;
 pub mod two_step;
 pub mod walk;
+pub mod wander;
 pub mod wobble;
 
 pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};

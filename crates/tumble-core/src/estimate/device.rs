@@ -15,6 +15,7 @@ use super::state::Block;
 use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::EARTH_SIGMA;
+use super::wander::Found;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
 use crate::order::median;
@@ -37,8 +38,6 @@ const LAST_ADAPTING: u32 = 14;
 const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
-/// Upper point of the normal distribution from which a walk is believed in: without one, once in a thousand sessions.
-const WALK_CERTAIN: f32 = 3.09;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
 /// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
@@ -85,6 +84,8 @@ pub struct Estimate {
     pub passes: u32,
     /// False if parameters still moved in the last pass.
     pub converged: bool,
+    /// The most that a parameter moved by in the last pass, sigmas.
+    pub moved: f32,
 }
 
 /// The arithmetic broke down at this place.
@@ -103,10 +104,6 @@ pub struct Estimator<const S: usize> {
     steps: [f32; 3],
     /// … and of a face.
     facet_step: f32,
-    /// Was the last pass certain that the gyroscope's bias walks, and the accelerometer's? Neither is believed before two passes in a row
-    /// say so: to believe in a walk that is not there costs the accelerometer a factor of four, and the first pass that judges stands
-    /// on noise that has not settled.
-    walks: [bool; 2],
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
     /// It has certainly drifted.
@@ -137,7 +134,6 @@ impl<const S: usize> Estimator<S> {
             passes: 0,
             steps: [1.0; 3],
             facet_step: 1.0,
-            walks: [false; 2],
             bias_wanders: false,
             slope_certain: false,
         }
@@ -199,24 +195,22 @@ impl<const S: usize> Estimator<S> {
         if self.passes < SETTLED {
             return;
         }
-        let sums = self.walk.pass.sums;
-        let probable = sums.rate_walk.exceeds(SIGNIFICANT);
-        self.bias_wanders = probable || self.noise.has_bias_walk();
-        let certain = [&sums.rate_walk, &sums.force_walk].map(|walk| walk.exceeds(WALK_CERTAIN));
-        let [rate, force] = core::array::from_fn(|walk| certain[walk] && self.walks[walk]);
-        self.walks = certain;
-        if let Some((excess, _)) = sums.rate_walk.value().filter(|_| rate || self.noise.has_bias_walk()) {
-            self.noise.set_bias_walk(self.noise.bias_walk + excess);
-        }
-        if let Some((excess, _)) = sums.force_walk.value().filter(|_| force || self.noise.has_force_walk()) {
-            self.noise.set_force_walk(self.noise.force_walk + excess);
-        }
-        if let Some(variance) = sums.pivot.mean(PIVOT_FLOOR) {
+        self.wander();
+        if let Some(variance) = self.walk.pass.sums.pivot.mean(PIVOT_FLOOR) {
             self.noise.pivot_sigma_m = libm::sqrtf(variance);
         }
         self.settle();
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
+    }
+
+    /// Biases that walk. To believe in a walk that is not there costs the accelerometer a factor of four.
+    fn wander(&mut self) {
+        let (rate, force) = (self.walk.pass.rate_walk.found(), self.walk.pass.force_walk.found());
+        self.bias_wanders = rate.is_some_and(|walk| walk.probable());
+        let certain = |walk: Option<Found>| walk.filter(Found::certain).map_or(0.0, |walk| walk.density);
+        self.noise.set_bias_walk(certain(rate));
+        self.noise.set_force_walk(certain(force));
     }
 
     /// What other noise would otherwise be blamed for: a bias that drifts, a box that is not square.
@@ -338,6 +332,7 @@ impl<const S: usize> Estimator<S> {
                 .collect(),
             passes: self.passes,
             converged,
+            moved: self.largest_move(),
         }
     }
 

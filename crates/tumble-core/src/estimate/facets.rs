@@ -4,6 +4,10 @@
 //! rotation of the box's frame, which faces alone define, σ the accelerometer's shear (symmetric, no diagonal), e the face's own error.
 //! The shear has to be free because the nominal's was fitted to these very faces: the plate tells it ten times as well as the turns
 //! do, so that residuals have lost what looks like it. Six faces give twelve numbers for eight unknowns, and leave four.
+//!
+//! ρ and p are one where `R (n × ρ)` is the same for all six faces. With headings that are multiples of 90° that happens for a ρ along
+//! a space diagonal, whose horizontal part every face has at one of four headings: 4 diagonals, 4 common directions, 4⁶ headings, once in
+//! 256 sessions. Only turns tell them apart then (`model::plate_in_turn`), in which e is therefore a state.
 
 use nalgebra::{Matrix3, Vector3};
 

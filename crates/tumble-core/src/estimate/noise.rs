@@ -34,10 +34,10 @@ const PIVOT: f32 = 5e-3;
 /// See [`PIVOT`].
 pub const PIVOT_FLOOR: f32 = 50e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
-const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
+pub(super) const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
 /// Likewise 10 µg in 100 s and 3 mg, (m/s²)²/s.
-const FORCE_WALK_FLOOR: f32 = 1e-11;
+pub(super) const FORCE_WALK_FLOOR: f32 = 1e-11;
 const FORCE_WALK_CAP: f32 = 1e-5;
 
 /// Densities and sigmas in force. The densities leave the tape's rounding of a single record out.
@@ -148,7 +148,7 @@ impl Noise {
         parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))
     }
 
-    /// Bias walk from how rates at the beginning of rests differed from what was expected.
+    /// Bias walk as rests show it.
     pub fn set_bias_walk(&mut self, found: f32) {
         self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
     }

@@ -99,8 +99,10 @@ impl<const S: usize> Walk<S> {
             // As many as the tape has segments: there is room.
             let _ = self.noise.push(SegmentNoise { force_scale: scale, rate_scale: 1.0, hinge_nis: f32::NAN });
         }
-        let middle_us = tape.segments().last().map_or(0, |last| (tape.segments()[0].start_us + last.end_us) / 2);
-        self.pass.time_s = (segment.start_us as i64 - middle_us as i64) as f32 * 1e-6;
+        let (start_us, end_us) =
+            tape.segments().last().map_or((0, 0), |last| (tape.segments()[0].start_us, last.end_us));
+        self.pass.session_s = (end_us - start_us) as f32 * 1e-6;
+        self.pass.time_s = (segment.start_us - start_us) as f32 * 1e-6 - 0.5 * self.pass.session_s;
         self.pass.group = Group::default();
         self.pass.turn_noise = TurnNoise::default();
         self.pass.unplated = 0;
@@ -162,8 +164,7 @@ impl<const S: usize> Walk<S> {
         let middle = self.pass.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
         let gravity = lever.map(|lever| self.pass.now.gravity(record, &to_n, self.gravity, lever));
-        let face = self.pass.visit.map_or_else(Vector3::zeros, |visit| to_n * visit.face.normal());
-        self.pass.group.take(&self.pass.now.drive(record, &to_n), gravity.as_ref(), &face, record.dt_s);
+        self.pass.group.take(&self.pass.now.drive(record, &to_n), gravity.as_ref(), &to_n, record.dt_s);
         let earth = UnitQuaternion::from_scaled_axis(self.pass.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.pass.attitude * UnitQuaternion::from_scaled_axis(rotation);
         self.pass.attitude = UnitQuaternion::new_normalize(next.into_inner());
@@ -203,9 +204,10 @@ impl<const S: usize> Walk<S> {
             return;
         };
         self.pass.unplated = 0;
-        let (normal, since) = group.mean_face();
-        let square = noise.facet_sigma_rad.is_some() && !noise.crooked;
-        let known = self.pass.plated && !self.pass.coarse && self.pass.table_known && square;
+        let (to_n, since) = group.mean_attitude();
+        let normal = to_n * visit.face.normal();
+        let boxed = noise.facet_sigma_rad.is_some();
+        let known = self.pass.plated && !self.pass.coarse && self.pass.table_known && boxed;
         if !known || !self.pass.facets.admits(&normal) {
             return;
         }
@@ -213,7 +215,7 @@ impl<const S: usize> Walk<S> {
         let [wobble, rocking] = [noise.wobble_sigma_rad, noise.rocking_sigma_rad].map(|sigma| sigma * sigma);
         let rocking = (rocking + UNSTEADY * wobble) * readings.max(1.0);
         let loose = self.loose(segment, noise);
-        let plane = visit.face.plane().map(|axis| self.pass.attitude * axis);
+        let plane = visit.face.plane().map(|axis| to_n * axis);
         for Observation { residual, row } in model::plate_in_turn(&normal, &plane, &since) {
             let innovation = self.filter.observe(&row, residual, WHITE * WHITE + rocking);
             self.pass.wobble.take(&innovation, rocking, loose);

@@ -1,6 +1,6 @@
 //! What a pass over the tape begins anew with.
 
-use nalgebra::UnitQuaternion;
+use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::estimate::closures::Closures;
 use crate::estimate::drift::Drift;
@@ -8,9 +8,11 @@ use crate::estimate::facets::Facets;
 use crate::estimate::filter::Filter;
 use crate::estimate::group::Group;
 use crate::estimate::model::Nominal;
+use crate::estimate::noise::{FORCE_WALK_FLOOR, WALK_FLOOR};
 use crate::estimate::state::Block;
 use crate::estimate::sums::Sums;
 use crate::estimate::turn_noise::TurnNoise;
+use crate::estimate::wander::Wander;
 use crate::estimate::wobble::Wobble;
 use crate::face::Face;
 
@@ -27,6 +29,10 @@ pub struct Pass {
     pub drift: Drift,
     /// See [`Self::closures`].
     pub wobble: Wobble,
+    /// Does the gyroscope's bias wander …
+    pub rate_walk: Wander<3>,
+    /// … and the accelerometer's?
+    pub force_walk: Wander<1>,
     /// Are there faces enough for the plate to be believed?
     pub plated: bool,
     /// Is the prior still wide?
@@ -34,8 +40,9 @@ pub struct Pass {
     pub(super) nominal: Nominal,
     /// The same with the bias as it is now.
     pub(super) now: Nominal,
-    /// Time since the session's middle, s.
+    /// Time since the session's middle, and its length, s.
     pub(super) time_s: f32,
+    pub(super) session_s: f32,
     pub(super) segment: usize,
     pub(super) record: usize,
     pub(super) attitude: UnitQuaternion<f32>,
@@ -50,7 +57,8 @@ pub struct Pass {
     pub(super) turn_prior: Option<(f32, f32)>,
     /// Groups of this turn since the plate was last looked at.
     pub(super) unplated: u16,
-    pub(super) last_rest_us: u64,
+    /// Mean rate of this rest, rad/s, and how far from it a record's may be.
+    pub(super) steady: (Vector3<f32>, f32),
     /// The move since the last rest: its segment, its length, and that rest's levelling variance, rad².
     pub(super) hinge: Option<usize>,
     pub(super) move_s: f32,
@@ -81,11 +89,14 @@ impl Pass {
             facets: Facets::default(),
             drift: Drift::default(),
             wobble: Wobble::default(),
+            rate_walk: Wander::new(WALK_FLOOR),
+            force_walk: Wander::new(FORCE_WALK_FLOOR),
             plated: true,
             coarse: true,
             nominal,
             now: nominal,
             time_s: 0.0,
+            session_s: 0.0,
             segment: 0,
             record: 0,
             attitude: UnitQuaternion::identity(),
@@ -97,7 +108,7 @@ impl Pass {
             turn_noise: TurnNoise::default(),
             turn_prior,
             unplated: 0,
-            last_rest_us: 0,
+            steady: (Vector3::zeros(), 0.0),
             hinge: None,
             move_s: 0.0,
             level_variance: 0.0,

@@ -21,6 +21,8 @@ const RESOLVED: f32 = 1.0 / 600.0;
 pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 /// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
 const LEVEL_SIGMA: f32 = 0.1;
+/// A record at rest whose rate is further than this from the rest's own is no rest: noise does that once in 5000 sessions of 300 numbers.
+const UNSTEADY_SIGMAS: f32 = 5.0;
 /// The level's prior in sigmas of the rest's own noise: as wide as `prior::narrow` makes the others.
 const LEVEL_WIDTH: f32 = 30.0;
 
@@ -37,10 +39,42 @@ impl<const S: usize> Walk<S> {
         let variance = own / (self.gravity * self.gravity);
         self.level(&self.pass.nominal.accel.compensate(&force), variance, noise);
         if noise::is_solid(segment, noise.quiet_variance) {
-            let rate = crate::motion::segmenter::mean_rate(tape, first, end) - self.pass.nominal.gyro.bias;
-            let to_b = self.pass.attitude.to_rotation_matrix().into_inner().transpose();
-            self.pass.drift.take(&rate, &to_b, self.pass.time_s + 0.5 * duration_s, duration_s);
+            self.compare(tape, segment, own, noise);
         }
+    }
+
+    /// What a rest's means say of biases that drift and wander. `own` is the mean specific force's variance.
+    fn compare<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, own: f32, noise: &Noise) {
+        let (first, end, duration_s) = (usize::from(segment.first), usize::from(segment.end), segment.duration_s());
+        let records = || (first..end).filter_map(|index| tape.record(index));
+        self.pass.steady = (crate::motion::segmenter::mean_rate(tape, first, end), f32::INFINITY);
+        let limit =
+            UNSTEADY_SIGMAS * libm::sqrtf(records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max));
+        self.pass.steady.1 = limit;
+        let (sum, time_s) = records()
+            .filter(|record| self.is_steady(record))
+            .fold((Vector3::zeros(), 0.0), |(sum, time_s), record| (sum + record.rotation_rad, time_s + record.dt_s));
+        let t_s = self.pass.time_s + 0.5 * duration_s;
+        if time_s > 0.0 {
+            let to_b = self.pass.attitude.to_rotation_matrix().into_inner().transpose();
+            let left = sum / time_s - self.pass.nominal.gyro.bias;
+            self.pass.drift.take(&left, &to_b, t_s, time_s);
+            let left = left - noise.bias_slope * t_s - to_b * self.pass.nominal.earth_rad_s;
+            self.pass.rate_walk.take(&left.into(), noise.rate_density / time_s + noise.rate_rounding, t_s);
+        }
+        // On another face every number of the accelerometer is another.
+        if self.pass.visit.is_none() {
+            self.pass.force_walk.restart();
+        }
+        let force = crate::motion::segmenter::mean_force(tape, first, end);
+        let left = self.pass.nominal.accel.compensate(&force).norm() - self.gravity;
+        self.pass.force_walk.take(&[left], own, t_s);
+    }
+
+    /// Does a record show the rest's own rate? A hand's last touch may be slower than what ends a rest.
+    fn is_steady(&self, record: &Record) -> bool {
+        let (mean, limit) = self.pass.steady;
+        (record.rotation_rad / record.dt_s - mean).amax() < limit
     }
 
     /// What a face on the table tells, after its gravity has narrowed the attitude: a plate is so sharp an observation
@@ -109,7 +143,9 @@ impl<const S: usize> Walk<S> {
         let anew = self.pass.visit.is_none_or(|visit| visit.face != face);
         // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
         let to_n = self.pass.attitude.to_rotation_matrix().into_inner();
-        self.pass.facets.take(anew, &face.normal(), &to_n, self.pass.level_variance);
+        // A bias that walks is off by q T/6 about its own mean, which leans what is levelled by it.
+        let walked = noise.force_walk * self.pass.session_s / (6.0 * self.gravity * self.gravity);
+        self.pass.facets.take(anew, &face.normal(), &to_n, self.pass.level_variance + walked);
         if anew {
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
@@ -162,7 +198,7 @@ impl<const S: usize> Walk<S> {
     }
 
     pub(super) fn rest(&mut self, segment: &Segment, record: &Record, noise: &Noise) {
-        let solid = noise::is_solid(segment, noise.quiet_variance);
+        let solid = noise::is_solid(segment, noise.quiet_variance) && self.is_steady(record);
         if !solid {
             self.turn(record, &Vector3::zeros(), None);
             core::mem::take(&mut self.pass.group).propagate(&mut self.filter, noise.rate_density);
@@ -172,7 +208,6 @@ impl<const S: usize> Walk<S> {
         // Coherent over the rest: as white noise it has its variance times the number of records.
         let rounding = noise.force_rounding * segment.duration_s() / record.dt_s;
         let variance = own + rounding + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
-        let since = segment.start_us.saturating_sub(self.pass.last_rest_us) as f32 * 1e-6;
         let parts = self.pass.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         let observation = parts.observation(self.gravity, None);
         let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
@@ -181,25 +216,21 @@ impl<const S: usize> Walk<S> {
                 self.pass.sums.rest.0 += innovation.nis();
                 self.pass.sums.rest.1 += 1.0;
             }
-        } else if self.pass.last_rest_us > 0 {
-            self.pass.sums.force_walk.take(&innovations[2], since);
         }
         if solid {
-            self.rest_rate(segment, record, &to_n.transpose(), noise);
+            self.rest_rate(record, &to_n.transpose(), noise);
         }
     }
 
-    fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
-        let rounded = ANGLE_UNIT_RAD / record.dt_s;
-        let density = noise.rate_density + noise.rate_rounding * noise.solid_s;
-        let variance = density / record.dt_s + ROUNDED * rounded * rounded;
-        let first = self.pass.record == 0;
-        let since = segment.start_us.saturating_sub(self.pass.last_rest_us) as f32 * 1e-6;
+    fn rest_rate(&mut self, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
+        let variance = rate_variance(record, noise) + noise.rate_rounding * noise.solid_s / record.dt_s;
         let observation = self.pass.now.rest_rate(record, to_b);
-        let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
-        if first && self.pass.last_rest_us > 0 {
-            innovations.iter().for_each(|innovation| self.pass.sums.rate_walk.take(innovation, since));
-        }
-        self.pass.last_rest_us = segment.end_us;
+        self.filter.observe_vector(&observation.rows, &observation.residual, variance);
     }
+}
+
+/// Of a record's mean rate, (rad/s)².
+fn rate_variance(record: &Record, noise: &Noise) -> f32 {
+    let rounded = ANGLE_UNIT_RAD / record.dt_s;
+    noise.rate_density / record.dt_s + ROUNDED * rounded * rounded
 }
