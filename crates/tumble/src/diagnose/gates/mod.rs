@@ -109,6 +109,7 @@ pub fn examine(scene: &Scene) -> Gated {
     if torn.found.is_none() {
         gated.take(shock);
     }
+    let tears = torn.found.is_some();
     gated.take(torn);
     let (gyro, accel) = saturation::examine(&view, &stale.repaired);
     gated.take(stale);
@@ -135,7 +136,8 @@ pub fn examine(scene: &Scene) -> Gated {
     let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
     let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
-    gated.take(line);
+    // Torn readings are a few spikes of one channel: their spectrum is not the noise that lines are told from.
+    gated.take(if tears { Outcome { found: None, ..line } } else { line });
     gated.take(aliasing::examine(&view));
     // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
     let rotation = [
