@@ -31,7 +31,7 @@ const FENCED: f32 = 0.05 * DEGREE_RAD;
 /// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least that is believed of
 /// it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
 const PIVOT: f32 = 5e-3;
-/// See [`PIVOT`].
+/// The least that a pivot moves by, m.
 pub const PIVOT_FLOOR: f32 = 50e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 pub(super) const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
