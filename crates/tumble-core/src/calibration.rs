@@ -131,6 +131,11 @@ pub enum Reason {
         /// Normalised innovation squared per degree of freedom.
         nis_per_dof: f32,
     },
+    /// The estimate had not come to rest when its time was up.
+    Unsettled {
+        /// The most that a parameter moved by in the last pass, sigmas.
+        sigmas: f32,
+    },
     /// A parameter is not determined by this session.
     NotObservable {
         /// Name as in `docs/protocol.md`.

@@ -8,6 +8,7 @@ pub mod facets;
 pub mod filter;
 pub mod group;
 pub mod judge;
+pub mod likelihood;
 pub mod model;
 pub mod noise;
 pub mod normal;
@@ -16,8 +17,10 @@ pub mod six_face;
 pub mod start;
 pub mod state;
 pub mod sums;
+pub mod turn_noise;
 pub mod two_step;
 pub mod walk;
+pub mod wander;
 pub mod wobble;
 
 pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};

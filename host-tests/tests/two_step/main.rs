@@ -1,6 +1,6 @@
 //! The paper's two-step method on simulated recordings: truth is recovered, sigmas are honest, `f32` is enough.
 //!
-//! `cargo test -p host-tests --test two_step -- --nocapture` prints the figures; add `--ignored` for the imperfect ones.
+//! `cargo test -p host-tests --test two_step -- --nocapture` prints the figures.
 
 mod session;
 mod statistics;
@@ -8,7 +8,7 @@ mod statistics;
 use session::{FENCED, SessionTape, session};
 use statistics::{print, run, study};
 use tumble_core::estimate::two_step::{Outcome, Variant, estimate};
-use tumble_sim::scheme::{Imperfection, TurnOrder};
+use tumble_sim::scheme::TurnOrder;
 use tumble_sim::{Scheme, SchemeConfig};
 
 /// Rms of Table 1's non-orthogonalities, −0.45° and 0.65°: 9.8 mrad.
@@ -109,13 +109,4 @@ fn f32_is_enough() {
     assert!(largest[0] < 3e-6, "K differs by {:e}", largest[0]);
     assert!(largest[1] < 2e-6, "scale differs by {:e}", largest[1]);
     assert!(largest[2] < 0.02, "sigma differs by {:e}", largest[2]);
-}
-
-#[test]
-#[ignore = "figures for the page, no bounds: what each imperfection does"]
-fn imperfections() {
-    for imperfection in Imperfection::ALL {
-        let groups = study(|seed| double(seed).with(imperfection), 10, Variant::Corrected);
-        print(&format!("double, {imperfection:?}, 10 seeds, taken as fenced and square"), &groups);
-    }
 }

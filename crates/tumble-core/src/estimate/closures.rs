@@ -39,14 +39,17 @@ pub struct Closures {
     grid: [Hypothesis; GRID],
     /// Of the variance in force.
     current: Hypothesis,
-    any: bool,
+    /// The gyroscope's own variance, summed, and how many closures that is.
+    noise: f32,
+    count: f32,
 }
 
 impl Closures {
     /// Turning by `turned_rad` about `axis` left `residual` rad between the stop before and this one; `noise` is the gyroscope's own
     /// variance in it, `variance` that of a stop in force.
     pub fn take(&mut self, axis: usize, turned_rad: f32, residual: f32, noise: f32, variance: f32) {
-        self.any = true;
+        self.noise += noise;
+        self.count += 1.0;
         self.current.take(axis, turned_rad, residual, noise, variance);
         for (hypothesis, variance) in self.grid.iter_mut().zip(variances()) {
             hypothesis.take(axis, turned_rad, residual, noise, variance);
@@ -59,8 +62,8 @@ impl Closures {
         self.grid.iter_mut().for_each(|hypothesis| hypothesis.stop = None);
     }
 
-    /// Mean of the posterior, rad², under a prior uniform over the logarithm; none without closures. `scales`: of each axis the
-    /// filter's estimate of `k` and its variance, found with the variance in force.
+    /// Mean of the posterior, rad²; none without closures. `scales`: of each axis the filter's estimate of `k` and its variance, found
+    /// with the variance in force. A closure of variance `2v + a` is seen beside `a/2`.
     pub fn variance(&self, stops: TurnStops, scales: &[(f32, f32); 3]) -> Option<f32> {
         let range = if stops == TurnStops::Fenced { FENCED } else { BY_HAND };
         let gravity: [(f32, f32); 3] = core::array::from_fn(|axis| {
@@ -74,12 +77,12 @@ impl Closures {
             }
         });
         let first = range.start;
+        let grid = variances().skip(first).take(range.len());
+        let noise = 0.5 * self.noise / self.count;
         // A fence that is exact is as likely as one that is not; a hand is never.
-        let least = if stops == TurnStops::Fenced { (range.len() - 1) as f32 } else { 1.0 };
-        self.any.then(|| {
-            let grid = variances().skip(first).take(range.len());
-            mean_variance(grid, least, |index, _| self.grid[first + index].log_likelihood(&gravity))
-        })
+        let exact = if stops == TurnStops::Fenced { 1.0 } else { 0.0 };
+        (self.count > 0.5)
+            .then(|| mean_variance(grid, noise, exact, |index, _| self.grid[first + index].log_likelihood(&gravity)))
     }
 }
 
@@ -108,7 +111,7 @@ impl Hypothesis {
     }
 }
 
-fn variances() -> impl Iterator<Item = f32> {
+fn variances() -> impl Iterator<Item = f32> + Clone {
     let mut variance = 0.5 * LEAST * LEAST;
     core::iter::repeat_with(move || {
         variance *= 2.0;
@@ -148,6 +151,21 @@ mod tests {
             assert!((0.8..1.7).contains(&found), "scale off by {scale}: {found}");
         }
         assert_eq!(Closures::default().variance(TurnStops::Fenced, &[(0.0, 1.0); 3]), None);
+    }
+
+    /// What the gyroscope's noise explains is no stop's: where it leaves a third of its sigma, less than half of that is blamed on stops,
+    /// be the grid's least sigma a hundredth of it or a tenth.
+    #[test]
+    fn noise_is_not_blamed_on_stops() {
+        for noise in [0.01f32, 0.1].map(|degrees| degrees * DEGREE_RAD) {
+            let mut closures = Closures::default();
+            for (visit, draw) in DRAWS.iter().enumerate() {
+                closures.take(visit / 2, core::f32::consts::TAU, 0.3 * noise * draw[0], noise * noise, 1e-7);
+                closures.end_visit();
+            }
+            let found = closures.variance(TurnStops::Fenced, &[(0.0, 1e3); 3]).expect("closures");
+            assert!(libm::sqrtf(found) < 0.5 * noise, "{} of {noise}", libm::sqrtf(found));
+        }
     }
 
     /// Two closures with a stop in common: the covariance of both at once, `[[2v + a, −v], [−v, 2v + a]]`, says the same.

@@ -8,13 +8,14 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use super::facets::SQUARE;
 use super::model::Nominal;
-use super::noise::Noise;
+use super::noise::{Noise, PIVOT_FLOOR};
 use super::prior::{self, CORRECTION_SIGMA};
 use super::start;
 use super::state::Block;
 use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::EARTH_SIGMA;
+use super::wander::Found;
 use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
 use crate::order::median;
@@ -37,12 +38,11 @@ const LAST_ADAPTING: u32 = 14;
 const NOISE_SETTLED: f32 = 0.1;
 /// Upper 1 % point of the normal distribution.
 const SIGNIFICANT: f32 = 2.326;
-/// Upper point of the normal distribution from which a walk is believed in: without one, once in a thousand sessions.
-const WALK_CERTAIN: f32 = 3.09;
 /// Moves needed for their median to mean something.
 const MIN_HINGES: usize = 5;
-/// Share of moves that are taken to be disturbed, over the logarithm of the most by which their variance may be larger (1e4).
-const DISTURBED: f32 = 0.05 / 9.21;
+/// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
+const DISTURBED: f32 = 0.05;
+const DISTURBANCE_LOG: f32 = 9.21;
 
 /// What the session was told.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +84,8 @@ pub struct Estimate {
     pub passes: u32,
     /// False if parameters still moved in the last pass.
     pub converged: bool,
+    /// The most that a parameter moved by in the last pass, sigmas.
+    pub moved: f32,
 }
 
 /// The arithmetic broke down at this place.
@@ -102,10 +104,6 @@ pub struct Estimator<const S: usize> {
     steps: [f32; 3],
     /// … and of a face.
     facet_step: f32,
-    /// Was the last pass certain that the gyroscope's bias walks, and the accelerometer's? Neither is believed before two passes in a row
-    /// say so: to believe in a walk that is not there costs the accelerometer a factor of four, and the first pass that judges stands
-    /// on noise that has not settled.
-    walks: [bool; 2],
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
     bias_wanders: bool,
     /// It has certainly drifted.
@@ -136,7 +134,6 @@ impl<const S: usize> Estimator<S> {
             passes: 0,
             steps: [1.0; 3],
             facet_step: 1.0,
-            walks: [false; 2],
             bias_wanders: false,
             slope_certain: false,
         }
@@ -166,10 +163,10 @@ impl<const S: usize> Estimator<S> {
         if self.passes >= 2 {
             prior::narrow(&mut prior, &self.walk.filter);
         }
-        let plated = self.walk.facets.agree_or_not();
+        let plated = self.walk.pass.facets.agree_or_not();
         self.walk.restart(nominal, &prior);
-        self.walk.plated = plated;
-        self.walk.coarse = self.passes < 2;
+        self.walk.pass.plated = plated;
+        self.walk.pass.coarse = self.passes < 2;
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
     }
 
@@ -198,48 +195,57 @@ impl<const S: usize> Estimator<S> {
         if self.passes < SETTLED {
             return;
         }
-        let sums = self.walk.sums;
-        let probable = sums.rate_walk.exceeds(SIGNIFICANT);
-        self.bias_wanders = probable || self.noise.has_bias_walk();
-        let certain = [&sums.rate_walk, &sums.force_walk].map(|walk| walk.exceeds(WALK_CERTAIN));
-        let [rate, force] = core::array::from_fn(|walk| certain[walk] && self.walks[walk]);
-        self.walks = certain;
-        if let Some((excess, _)) = sums.rate_walk.value().filter(|_| rate || self.noise.has_bias_walk()) {
-            self.noise.set_bias_walk(self.noise.bias_walk + excess);
-        }
-        if let Some((excess, _)) = sums.force_walk.value().filter(|_| force || self.noise.has_force_walk()) {
-            self.noise.set_force_walk(self.noise.force_walk + excess);
-        }
-        if let Some((excess, _)) = sums.pivot.value() {
-            self.noise.set_pivot_variance(self.noise.pivot_sigma_m * self.noise.pivot_sigma_m + excess);
+        self.wander();
+        if let Some(variance) = self.walk.pass.sums.pivot.mean(PIVOT_FLOOR) {
+            self.noise.pivot_sigma_m = libm::sqrtf(variance);
         }
         self.settle();
         let steady = self.scale_motion();
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }
 
+    /// Biases that walk. To believe in a walk that is not there costs the accelerometer a factor of four.
+    fn wander(&mut self) {
+        let (rate, force) = (self.walk.pass.rate_walk.found(), self.walk.pass.force_walk.found());
+        self.bias_wanders = rate.is_some_and(|walk| walk.probable());
+        let certain = |walk: Option<Found>| walk.filter(Found::certain).map_or(0.0, |walk| walk.density);
+        self.noise.set_bias_walk(certain(rate));
+        self.noise.set_force_walk(certain(force));
+    }
+
     /// What other noise would otherwise be blamed for: a bias that drifts, a box that is not square.
     fn straighten<const R: usize>(&mut self, tape: &Tape<R, S>) {
         if let (Some(slope), [first, .., last]) =
-            (self.walk.drift.slope(self.noise.rate_density, EARTH_SIGMA), tape.segments())
+            (self.walk.pass.drift.slope(self.noise.rate_density, EARTH_SIGMA), tape.segments())
         {
             self.slope_certain = slope.certain;
             self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
         }
         // The start is 20 mrad off, which is no box's fault; the first pass leaves its square, 0.4 mrad.
+        let shear = self.shear_variance();
         if self.passes > 1
             && let Some(sigma) = &mut self.noise.facet_sigma_rad
         {
-            let (found, crooked) = self.walk.facets.variance().unwrap_or((SQUARE * SQUARE, false));
+            let (found, crooked) = self.walk.pass.facets.variance(*sigma, shear).unwrap_or((SQUARE * SQUARE, false));
             damp(sigma, libm::sqrtf(found), &mut self.facet_step);
             self.noise.crooked = crooked;
         }
     }
 
+    /// Variance of one component of the accelerometer's shear, `(A_ij + A_ji)/2`, in the mean over the three, 1.
+    fn shear_variance(&self) -> f32 {
+        let covariance = self.walk.filter.covariance();
+        let at = |i: usize, j: usize| Block::AccelCorrection.start() + 3 * i + j;
+        [(0, 1), (0, 2), (1, 2)].into_iter().fold(0.0, |sum, (i, j)| {
+            let (a, b) = (at(i, j), at(j, i));
+            sum + (covariance[(a, a)] + covariance[(b, b)] + 2.0 * covariance[(a, b)]).max(0.0) / 12.0
+        })
+    }
+
     /// Both parts of a wobble, and stops. A plate or a fence believed less shows smaller residuals, and then is believed more: where
     /// a step would take the last one back, half of it is made (in the logarithm), which ends the swing.
     fn settle(&mut self) {
-        let found = [self.walk.wobble.turning(), self.walk.wobble.rest(), self.stops()];
+        let found = [self.walk.pass.wobble.turning(), self.walk.pass.wobble.rest(), self.stops()];
         let noise = &mut self.noise;
         let sigmas = [&mut noise.wobble_sigma_rad, &mut noise.rocking_sigma_rad, &mut noise.stop_sigma_rad];
         for ((sigma, found), last) in sigmas.into_iter().zip(found).zip(&mut self.steps) {
@@ -255,7 +261,7 @@ impl<const S: usize> Estimator<S> {
             let index = Block::GyroCorrection.start() + 4 * axis;
             (filter.state()[index], filter.covariance()[(index, index)])
         });
-        self.walk.closures.variance(self.conditions.stops, &scales)
+        self.walk.pass.closures.variance(self.conditions.stops, &scales)
     }
 
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
@@ -268,8 +274,10 @@ impl<const S: usize> Estimator<S> {
             return true;
         }
         let Some(middle) = median(&mut hinges) else { return true };
-        // A median's standard error is 1/(2 f √n), and the density f of χ²₂ at its median is 1/4.
-        let certain = middle > 1.386 + SIGNIFICANT * 2.0 / libm::sqrtf(hinges.len() as f32);
+        // The share of χ²₂ below the median of n is ½ in the mean, with a variance of 1/(4 (n + 2)). (The median itself is far from
+        // normal: a limit on it that should be passed once in a hundred sessions was passed in three.)
+        let below = 1.0 - libm::expf(-0.5 * middle);
+        let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges.len() as f32 + 2.0);
         let excess = match self.noise.motion_scale > 1.0 || certain {
             true => (middle / 1.386).max(1.0 / self.noise.motion_scale),
             false => 1.0,
@@ -324,6 +332,7 @@ impl<const S: usize> Estimator<S> {
                 .collect(),
             passes: self.passes,
             converged,
+            moved: self.largest_move(),
         }
     }
 
@@ -345,7 +354,7 @@ impl<const S: usize> Estimator<S> {
             largest = largest.max(libm::fabsf(error));
             count += 1.0;
         }
-        let sums = self.walk.sums;
+        let sums = self.walk.pass.sums;
         let moves = self.walk.noise.iter().filter(|noise| noise.hinge_nis.is_finite());
         let (hinge, dof) =
             moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
@@ -377,7 +386,8 @@ fn disturbance(nis: f32) -> f32 {
         return 1.0;
     }
     let like = libm::expf(-a);
-    let usual = (1.0 - 0.05) * like;
-    let disturbed = DISTURBED * (1.0 - like) / a;
-    (usual + disturbed) / (usual + DISTURBED * (1.0 - (1.0 + a) * like) / (a * a))
+    let usual = (1.0 - DISTURBED) * like;
+    let density = DISTURBED / DISTURBANCE_LOG;
+    let disturbed = density * (1.0 - like) / a;
+    (usual + disturbed) / (usual + density * (1.0 - (1.0 + a) * like) / (a * a))
 }

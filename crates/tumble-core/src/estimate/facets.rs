@@ -1,8 +1,13 @@
-//! How crooked a box that is called square is: the marginal likelihood of its faces' variance, where table and frame are free.
+//! How crooked a box that is called square is: the marginal likelihood of its faces' variance, where table, frame and shear are free.
 //!
-//! At the first rest of every visit the face's normal in frame n is `(R n)ₓᵧ = p + (R [n×] ρ)ₓᵧ − (R e)ₓᵧ`: p the table, ρ a common
-//! rotation of the box's frame, which faces alone define, e the face's own error. Six faces give twelve such numbers for
-//! two and three unknowns; the squares that are left have seven degrees of freedom.
+//! Over the rests of a visit the face's mean normal in frame n is `(R n)ₓᵧ = p + (R [n×] ρ)ₓᵧ − (R σ n)ₓᵧ − (R e)ₓᵧ`: p the table, ρ a common
+//! rotation of the box's frame, which faces alone define, σ the accelerometer's shear (symmetric, no diagonal), e the face's own error.
+//! The shear has to be free because the nominal's was fitted to these very faces: the plate tells it ten times as well as the turns
+//! do, so that residuals have lost what looks like it. Six faces give twelve numbers for eight unknowns, and leave four.
+//!
+//! ρ and p are one where `R (n × ρ)` is the same for all six faces. With headings that are multiples of 90° that happens for a ρ along
+//! a space diagonal, whose horizontal part every face has at one of four headings: 4 diagonals, 4 common directions, 4⁶ headings, once in
+//! 256 sessions. Only turns tell them apart then (`model::plate_in_turn`), in which e is therefore a state.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -15,6 +20,9 @@ const GRID: usize = 25;
 /// Twice the logarithm of the likelihood's ratio from which a box is said not to be square: ½χ²₁ exceeds it once in a thousand
 /// sessions.
 const CERTAIN: f32 = 9.55;
+/// Unknowns: table 2 and frame 3, then shear 3.
+const TABLE_AND_FRAME: usize = 5;
+const UNKNOWNS: usize = 8;
 
 /// No table leans by more than this, and no face by more from the first one, 1 (10° and 6°): what does is no face on a table.
 pub const LEANING: f32 = 0.17;
@@ -23,10 +31,21 @@ const APART: f32 = 0.1;
 /// Sums over a pass.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Facets {
-    normal: Normal<6>,
+    normal: Normal<9>,
     first: Option<Vector3<f32>>,
     noise: f32,
     count: f32,
+    visit: Option<Visit>,
+}
+
+/// A stay on one face: its normal, the attitude at the first rest, sums over rests of the normal in frame n and of its variance.
+#[derive(Clone, Copy, Debug)]
+struct Visit {
+    normal_b: Vector3<f32>,
+    to_n: Matrix3<f32>,
+    sum: Vector3<f32>,
+    noise: f32,
+    rests: f32,
 }
 
 impl Facets {
@@ -36,39 +55,79 @@ impl Facets {
         normal_n.xy().norm() < LEANING && apart < APART
     }
 
-    /// The normal of the face that came to lie on the table as the filter has it, and the variance of a component of it.
-    pub fn take(&mut self, normal_b: &Vector3<f32>, normal_n: &Vector3<f32>, to_n: &Matrix3<f32>, noise: f32) {
+    /// A rest on a face, whose normal in frame n the levelled attitude has with a variance of `noise` a component. `anew`: the face came to
+    /// lie on the table since the last rest.
+    pub fn take(&mut self, anew: bool, normal_b: &Vector3<f32>, to_n: &Matrix3<f32>, noise: f32) {
+        if anew {
+            self.end_visit();
+        }
+        let normal_n = to_n * normal_b;
         // About the first one, so that `f32` does not lose the residuals beside the table's tilt.
-        let left = normal_n - *self.first.get_or_insert(*normal_n);
+        let left = normal_n - *self.first.get_or_insert(normal_n);
+        let new = Visit { normal_b: *normal_b, to_n: *to_n, sum: Vector3::zeros(), noise: 0.0, rests: 0.0 };
+        let visit = self.visit.get_or_insert(new);
+        visit.sum += left;
+        visit.noise += noise;
+        visit.rests += 1.0;
+    }
+
+    fn end_visit(&mut self) {
+        let Some(Visit { normal_b, to_n, sum, noise, rests }) = self.visit.take() else { return };
+        let left = sum / rests;
         let frame = to_n * normal_b.cross_matrix();
+        let [x, y, z] = [normal_b.x, normal_b.y, normal_b.z];
+        let shear = to_n * Matrix3::new(0.0, z, y, z, 0.0, x, y, x, 0.0);
         for axis in 0..2 {
-            let table = [0, 1].map(|of| if of == axis { 1.0 } else { 0.0 });
-            let row = [table[0], table[1], frame[(axis, 0)], frame[(axis, 1)], frame[(axis, 2)], left[axis]];
+            let mut row = [0.0; 9];
+            row[axis] = 1.0;
+            for unknown in 0..3 {
+                row[2 + unknown] = frame[(axis, unknown)];
+                row[5 + unknown] = shear[(axis, unknown)];
+            }
+            row[8] = left[axis];
             self.normal.take(&row, 1.0);
         }
-        self.noise += 2.0 * noise;
+        self.noise += 2.0 * noise / (rests * rests);
         self.count += 2.0;
     }
 
     /// Are there faces enough to tell if they agree?
     pub fn agree_or_not(&self) -> bool {
-        self.count >= 6.0
+        self.count + if self.visit.is_some() { 2.0 } else { 0.0 } >= 6.0
     }
 
     /// Mean of the posterior of a face's variance, rad², a square box being as likely as a crooked one before, and whether it is certain
     /// that faces err at all. Faces that err by less than the rests' levels are known (0.02° is 200 µrad, a rest of 2.5 s knows 130) are not
-    /// told from square ones for certain; their variance is believed by the odds.
-    pub fn variance(&self) -> Option<(f32, bool)> {
-        let mut normal = self.normal;
-        let freedom = self.count - normal.eliminate(5) as f32;
-        if freedom < 1.0 {
+    /// told from square ones for certain; their variance is believed by the odds. `sigma` is a face's in force, `shear` the filter's variance of
+    /// the nominal's shear, 1.
+    ///
+    /// What is not the plate's of the information on shear stays the shear's prior, be it a hundredth: what is told by less than that
+    /// is lost in `f32`, and a direction of table, frame and shear together is told by almost nothing.
+    pub fn variance(&self, sigma: f32, shear: f32) -> Option<(f32, bool)> {
+        let mut all = *self;
+        all.end_visit();
+        let noise = all.noise / all.count;
+        if all.count - (all.normal.clone().eliminate(TABLE_AND_FRAME).0 as f32) < 1.0 {
             return None;
         }
-        let (squares, noise) = (normal.at(5, 5), self.noise / self.count);
-        let log = |variance: f32| -0.5 * (freedom * libm::logf(noise + variance) + squares / (noise + variance));
-        let likeliest = (squares / freedom - noise).max(0.0);
-        let certain = 2.0 * (log(likeliest) - log(0.0)) > CERTAIN;
-        let grid = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
-        Some((mean_variance(grid, (GRID - 1) as f32, |_, variance| log(variance)), certain))
+        let prior = (1.0 / shear - 4.0 / (noise + sigma * sigma)).max(0.01 / shear);
+        let variances = (0..GRID).map(|step| SQUARE * SQUARE * libm::exp2f(step as f32));
+        let mut logs = [0.0f32; GRID];
+        for (log, variance) in logs.iter_mut().zip(variances.clone()) {
+            *log = all.log_likelihood(noise + variance, prior);
+        }
+        let best = logs.iter().fold(f32::NEG_INFINITY, |best, log| best.max(*log));
+        let certain = 2.0 * (best - logs[0]) > CERTAIN;
+        Some((mean_variance(variances, noise, 1.0, |index, _| logs[index]), certain))
+    }
+
+    /// Of a variance of each number, where `prior` is known of the shear.
+    fn log_likelihood(&self, variance: f32, prior: f32) -> f32 {
+        let mut normal = self.normal;
+        let sigma = 1.0 / libm::sqrtf(variance * prior);
+        (TABLE_AND_FRAME..UNKNOWNS).for_each(|shear| normal.expect(shear, sigma));
+        let (rank, log_determinant) = normal.eliminate(UNKNOWNS);
+        let squares = normal.at(UNKNOWNS, UNKNOWNS) / variance;
+        -0.5 * ((self.count - rank as f32) * libm::logf(variance) + log_determinant + squares)
     }
 }

@@ -4,7 +4,7 @@
 //! one mean reading: nothing is lost but what a hand's 8–12 Hz tremor does, which the mean suppresses, and the filter's work
 //! falls tenfold.
 
-use nalgebra::Vector3;
+use nalgebra::Matrix3;
 
 use super::filter::{AttitudeDrive, Filter, Innovation};
 use super::model::GravityParts;
@@ -19,19 +19,19 @@ pub struct Group {
     drive: AttitudeDrive,
     since_mean: AttitudeDrive,
     gravity: GravityParts,
-    face: Vector3<f32>,
+    to_n: Matrix3<f32>,
 }
 
 impl Group {
-    /// Adds a record: its attitude drive and, on the table, its gravity reading and the normal of the face it lies on.
-    pub fn take(&mut self, drive: &AttitudeDrive, gravity: Option<&GravityParts>, face_n: &Vector3<f32>, dt_s: f32) {
+    /// Adds a record: its attitude drive and, on the table, its gravity reading; `to_n` is the attitude.
+    pub fn take(&mut self, drive: &AttitudeDrive, gravity: Option<&GravityParts>, to_n: &Matrix3<f32>, dt_s: f32) {
         self.drive.add(drive, 1.0);
         // A record's drive is missed by the readings of all records before and by half of its own.
         self.since_mean.add(drive, self.seconds + 0.5 * dt_s);
         if let Some(gravity) = gravity {
             self.gravity.add(gravity, dt_s);
         }
-        self.face += face_n * dt_s;
+        self.to_n += to_n * dt_s;
         self.records += 1;
         self.seconds += dt_s;
     }
@@ -41,9 +41,10 @@ impl Group {
         filter.propagate(&self.drive, density * self.seconds);
     }
 
-    /// The face's mean normal, and how attitude has moved on since that mean.
-    pub fn mean_face(&self) -> (Vector3<f32>, AttitudeDrive) {
-        (self.face / self.seconds, self.mean_since())
+    /// The mean of the attitude as a matrix, and how attitude has moved on since that mean. The attitude at the group's end would have
+    /// what turns with the box 9° out of phase (36 °/s): as if table, faces and box were seen in another place than where they were.
+    pub fn mean_attitude(&self) -> (Matrix3<f32>, AttitudeDrive) {
+        (self.to_n / self.seconds, self.mean_since())
     }
 
     fn mean_since(&self) -> AttitudeDrive {

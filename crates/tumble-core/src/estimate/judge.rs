@@ -24,6 +24,9 @@ const CORRECTION_SIGMA_LIMIT: f32 = 3e-3;
 const ACCEL_BIAS_SIGMA_LIMIT: f32 = 0.05;
 /// Motion whose residuals are this many times their expected square is worth a warning: five sigma where one is expected.
 const MOTION_LIMIT: f32 = 25.0;
+/// What still moves by more sigmas than this in the last pass is where nothing says that it is: a step of Gauss–Newton is the linear
+/// part of what is left, and a sigma that this exceeds is not the error's.
+const MOVED_LIMIT: f32 = 1.0;
 /// A move down-weighted by more than this is reported as left out: its level error is 24 sigma, χ²₂ = 600.
 const OUTLIER_LIMIT: f32 = 300.0;
 /// A bias that moves by more than this within a session is worth a warning, rad/s.
@@ -63,6 +66,9 @@ pub fn judge<const R: usize, const S: usize>(
     let calibration = &estimate.calibration;
     warn_of_the_session(estimate, tape, lost, &mut bench);
     warn_of_doubt(calibration, &mut bench);
+    if estimate.moved > MOVED_LIMIT {
+        bench.reject(Reason::Unsettled { sigmas: estimate.moved });
+    }
     reject_the_impossible(calibration, &mut bench);
     reject_the_undetermined(calibration, tape, &mut bench);
     let accepted = (bench.verdict != Verdict::Rejected).then(|| AcceptedCalibration::new(*calibration));

@@ -160,7 +160,7 @@ pub fn plate(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2]) -> [Observati
     [Observation { residual: normal_n.x, row: facet(x, 0) }, Observation { residual: normal_n.y, row: facet(y, 1) }]
 }
 
-/// The same in a turn, of a square face's mean normal: `(R n)ₓᵧ = p − (φ × R n)ₓᵧ − (R w)ₓᵧ`. `since` as in
+/// The same in a turn, of a face's mean normal: `(R n)ₓᵧ = p − (φ × R n)ₓᵧ − (R (e + w))ₓᵧ`. `since` as in
 /// [`GravityParts::observation`]; the heading's part, a table's tilt small, goes without.
 pub fn plate_in_turn(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2], since: &AttitudeDrive) -> [Observation; 2] {
     let tilt = [(1, normal_n.z, -normal_n.y), (0, -normal_n.z, normal_n.x)];
@@ -171,8 +171,10 @@ pub fn plate_in_turn(normal_n: &Vector3<f32>, plane_n: &[Vector3<f32>; 2], since
         row.set(Block::Attitude, 2, [-heading]);
         since.add_to(&mut row, attitude, coefficient);
         row.set(Block::Table, axis, [1.0]);
-        row.set(Block::Wobble, 0, [-plane_n[0][axis]]);
-        row.set(Block::Wobble, 1, [-plane_n[1][axis]]);
+        for block in [Block::Facet, Block::Wobble] {
+            row.set(block, 0, [-plane_n[0][axis]]);
+            row.set(block, 1, [-plane_n[1][axis]]);
+        }
         Observation { residual: normal_n[axis], row }
     })
 }

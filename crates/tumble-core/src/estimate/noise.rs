@@ -7,6 +7,7 @@ use super::drift::Slope;
 use super::facets::SQUARE;
 use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
+use crate::motion::grain::SOLID;
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Kind, Segment, Tape};
@@ -27,16 +28,16 @@ const SHORTEST_S: f32 = 2.0;
 const BY_HAND: f32 = 2.0 * DEGREE_RAD;
 /// What a stop against a fence is taken for before its innovations are seen.
 const FENCED: f32 = 0.05 * DEGREE_RAD;
-/// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least and most
-/// that is believed of it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
+/// How far a hand moves a turn's axis from one turn to the next before innovations are seen, m, and the least that is believed of
+/// it: 50 µm moves the specific force of a 36 °/s turn by 2 µg.
 const PIVOT: f32 = 5e-3;
-const PIVOT_FLOOR: f32 = 50e-6;
-const PIVOT_CAP: f32 = 0.05;
+/// The least that a pivot moves by, m.
+pub const PIVOT_FLOOR: f32 = 50e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
-const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
+pub(super) const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
 /// Likewise 10 µg in 100 s and 3 mg, (m/s²)²/s.
-const FORCE_WALK_FLOOR: f32 = 1e-11;
+pub(super) const FORCE_WALK_FLOOR: f32 = 1e-11;
 const FORCE_WALK_CAP: f32 = 1e-5;
 
 /// Densities and sigmas in force. The densities leave the tape's rounding of a single record out.
@@ -147,7 +148,7 @@ impl Noise {
         parts(self).iter().zip(parts(other)).all(|(a, b)| libm::fabsf(a - b) <= share * libm::fabsf(b))
     }
 
-    /// Bias walk from how rates at the beginning of rests differed from what was expected.
+    /// Bias walk as rests show it.
     pub fn set_bias_walk(&mut self, found: f32) {
         self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
     }
@@ -165,11 +166,6 @@ impl Noise {
     /// Likewise for the accelerometer.
     pub fn set_force_walk(&mut self, found: f32) {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
-    }
-
-    /// Pivot variance from what turns estimated of it, m².
-    pub fn set_pivot_variance(&mut self, found: f32) {
-        self.pivot_sigma_m = libm::sqrtf(found.max(0.0)).clamp(PIVOT_FLOOR, PIVOT_CAP);
     }
 
     /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the
@@ -216,10 +212,9 @@ fn lengths<const R: usize, const S: usize>(tape: &Tape<R, S>, quiet_variance: f3
     (solid_s, parts / visits.max(1.0))
 }
 
-/// A rest on something solid, as against one in the hand: its rates scatter by no more than twice the quietest's, which
-/// by chance alone happens to less than one still in a million (100 independent values: χ²₁₀₀/100 > 2).
+/// A rest on something solid, as against one in the hand.
 pub fn is_solid(segment: &Segment, quiet_variance: f32) -> bool {
-    matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= 2.0 * quiet_variance)
+    matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= SOLID * quiet_variance)
 }
 
 /// Densities of one still, from the differences of neighbouring half-second means.

@@ -28,9 +28,10 @@ impl<const N: usize> Normal<N> {
         self.sums[unknown][unknown] += 1.0 / (sigma * sigma);
     }
 
-    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all.
-    pub fn eliminate(&mut self, count: usize) -> usize {
-        let mut rank = 0;
+    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all, and the logarithm of these ones'
+    /// determinant.
+    pub fn eliminate(&mut self, count: usize) -> (usize, f32) {
+        let (mut rank, mut log_determinant) = (0, 0.0);
         let own: [f32; N] = core::array::from_fn(|index| self.sums[index][index]);
         for pivot in 0..count {
             let row = self.sums[pivot];
@@ -39,12 +40,13 @@ impl<const N: usize> Normal<N> {
                 continue;
             }
             rank += 1;
+            log_determinant += libm::logf(row[pivot]);
             for (index, sums) in self.sums.iter_mut().enumerate().skip(pivot + 1) {
                 let share = row[index] / row[pivot];
                 sums.iter_mut().zip(&row).for_each(|(sum, value)| *sum -= share * value);
             }
         }
-        rank
+        (rank, log_determinant)
     }
 
     /// An element.
@@ -53,10 +55,18 @@ impl<const N: usize> Normal<N> {
     }
 }
 
-/// A posterior over a logarithmic grid of variances, each step a factor of two, under a prior that is uniform over it but for the least
-/// value, which counts `least` times: as many as all the others together where there may as well be nothing at all (Jeffreys 1961).
-/// Its mean, and not its peak, is what variances of other things are made of: these are linear in it.
-pub fn mean_variance(grid: impl Iterator<Item = f32>, least: f32, log_likelihood: impl Fn(usize, f32) -> f32) -> f32 {
+/// The mean of the posterior of a variance v over a logarithmic grid, each step a factor of two. What is seen has the variance `v + noise`,
+/// and the prior is Jeffreys' for that, `dv/(v + noise)`: uniform over the logarithm of what stands above the noise, and nothing
+/// for what is lost in it (Tiao & Tan 1965). Where there may as well be nothing at all, `nothing` times as much as all of this stands on the
+/// least value besides. The mean, and not the peak, is what variances of other things are made of: these are linear in it.
+pub fn mean_variance(
+    grid: impl Iterator<Item = f32> + Clone,
+    noise: f32,
+    nothing: f32,
+    log_likelihood: impl Fn(usize, f32) -> f32,
+) -> f32 {
+    let prior = |variance: f32| variance / (variance + noise);
+    let least = nothing * grid.clone().map(prior).sum::<f32>();
     let (mut best, mut weights, mut sum) = (f32::NEG_INFINITY, 0.0f32, 0.0f32);
     for (index, variance) in grid.enumerate() {
         let log = log_likelihood(index, variance);
@@ -66,7 +76,7 @@ pub fn mean_variance(grid: impl Iterator<Item = f32>, least: f32, log_likelihood
             sum *= scale;
             best = log;
         }
-        let weight = libm::expf(log - best) * if index == 0 { least } else { 1.0 };
+        let weight = libm::expf(log - best) * (prior(variance) + if index == 0 { least } else { 0.0 });
         weights += weight;
         sum += weight * variance;
     }
@@ -84,7 +94,7 @@ mod tests {
         for (x, y) in [(0.0, 1.0), (1.0, 3.1), (2.0, 4.9), (3.0, 7.0)] {
             normal.take(&[1.0, x, y], 4.0);
         }
-        assert_eq!(normal.eliminate(1), 1);
+        assert_eq!(normal.eliminate(1), (1, libm::logf(16.0)));
         assert!((normal.at(1, 2) / normal.at(1, 1) - 1.98).abs() < 1e-5);
         assert!((normal.at(1, 1) - 4.0 * 5.0).abs() < 1e-5);
         assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.018).abs() < 1e-3, "{}", normal.at(2, 2));
@@ -95,7 +105,7 @@ mod tests {
     fn the_mean_is_the_posteriors() {
         let (n, v) = (10.0, 1e-6f32);
         let grid = (0..24).map(|k| 1e-9 * libm::exp2f(k as f32));
-        let mean = mean_variance(grid, 1.0, |_, x| -0.5 * n * (libm::logf(x) + v / x));
+        let mean = mean_variance(grid, 0.0, 0.0, |_, x| -0.5 * n * (libm::logf(x) + v / x));
         assert!((mean / (v * n / (n - 2.0)) - 1.0).abs() < 0.02, "{mean}");
     }
 }

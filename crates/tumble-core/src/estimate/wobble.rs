@@ -8,16 +8,13 @@
 //! variance `v + r`: K, gyroscope and attitude are all in r. What is left over shows in the innovations.
 
 use super::filter::Innovation;
-use super::normal::mean_variance;
+use super::likelihood::Likelihood;
 use crate::DEGREE_RAD;
 
 /// What a wobble is taken for before any was seen, rad: nothing is learnt of a turn that wobbles by a degree.
 pub const UNSEEN: f32 = DEGREE_RAD;
 /// Least sigma, rad: 0.5 µm on 5 cm. The grid grows by √2 a step from there, to 3.3°.
 const LEAST: f32 = 10e-6;
-const GRID: usize = 26;
-/// A box as often as not turns without any wobble that shows: the least sigma has half of the prior.
-const NOTHING: f32 = (GRID - 1) as f32;
 
 /// Sums over a pass.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,58 +23,27 @@ pub struct Wobble {
     rest: Likelihood,
 }
 
-/// `−2 ln L` of each variance of the grid.
-#[derive(Clone, Copy, Debug, Default)]
-struct Likelihood {
-    costs: [f32; GRID],
-    any: bool,
-}
-
-impl Likelihood {
-    /// A value of variance `v + noise`.
-    fn take(&mut self, value: f32, noise: f32) {
-        for (cost, variance) in self.costs.iter_mut().zip(variances()) {
-            let own = variance + noise.max(0.0);
-            *cost += libm::logf(own) + value * value / own;
-        }
-        self.any = true;
-    }
-
-    /// Mean of the posterior, rad², under a prior uniform over the logarithm; none without data.
-    fn mean(&self) -> Option<f32> {
-        self.any.then(|| mean_variance(variances(), NOTHING, |index, _| -0.5 * self.costs[index]))
-    }
-}
-
 impl Wobble {
     /// How far the face was from the plate; `rest` is what the innovation's variance has for the rest, `loose` the
     /// most that is believed of what is left.
     pub fn take(&mut self, innovation: &Innovation, rest: f32, loose: f32) {
-        self.rest.take(innovation.value, (innovation.variance - rest).min(loose));
+        self.rest.take(innovation.value, (innovation.variance - rest).min(loose), LEAST);
     }
 
     /// What a turn made of one of its two states, whose variance was `prior` at first.
     pub fn take_turn(&mut self, mean: f32, variance: f32, prior: f32, loose: f32) {
-        let share = 1.0 - variance / prior;
-        // What brought nothing says nothing.
-        if share > 0.01 {
-            self.turning.take(mean / share, (variance / share).min(loose));
-        }
+        self.turning.take_state(mean, variance, prior, loose, LEAST);
     }
 
     /// Variance of what turns with the box; none without turns.
     pub fn turning(&self) -> Option<f32> {
-        self.turning.mean()
+        self.turning.mean(LEAST)
     }
 
     /// Likewise of the rest.
     pub fn rest(&self) -> Option<f32> {
-        self.rest.mean()
+        self.rest.mean(LEAST)
     }
-}
-
-fn variances() -> impl Iterator<Item = f32> {
-    (0..GRID).map(|step| LEAST * LEAST * libm::exp2f(step as f32))
 }
 
 #[cfg(test)]

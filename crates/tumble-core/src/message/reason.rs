@@ -15,6 +15,7 @@ impl Reason {
             Self::Clipped { .. } => "clipped",
             Self::OutOfRange { .. } => "out_of_range",
             Self::PoorFit { .. } => "poor_fit",
+            Self::Unsettled { .. } => "unsettled",
             Self::NotObservable { .. } => "not_observable",
             Self::Uncertain { .. } => "uncertain",
             Self::BiasDrift { .. } => "bias_drift",
@@ -58,6 +59,11 @@ impl Display for Reason {
                 f,
                 "The data do not fit together: residuals are {nis_per_dof:.1} times (squared) what the noise explains. Use a firm \
                  table, let go fully at each rest, keep the box flat in turns, and calibrate again."
+            ),
+            Self::Unsettled { sigmas } => write!(
+                f,
+                "The estimate did not settle: a number still moved by {sigmas:.0} times its uncertainty. The data contradict each other \
+                 or hardly tell the axes apart. Use a firm table, turn the box fully on each face, and calibrate again."
             ),
             Self::BiasDrift { axis: i, drift_rad_s } => write!(
                 f,

@@ -28,8 +28,9 @@ use crate::sample::Sample;
 const TERMS: usize = 4;
 /// Halvings of the interval that σ is sought in: to a 2000th of a step.
 const HALVINGS: u32 = 11;
-/// Rests that tremble by more than this many times the quietest's variance say nothing of the sensor's noise (as in `noise::is_solid`).
-const SOLID: f32 = 2.0;
+/// A rest on something solid, as against one in the hand, shows rates whose variance is at most this many times the quietest's; by chance
+/// alone less than one in a million exceeds it (100 independent values: χ²₁₀₀/100 > 2).
+pub const SOLID: f32 = 2.0;
 
 /// Sample variances of rests, gyroscope's and accelerometer's axes, and over how many blocks they are summed.
 #[derive(Clone, Copy, Debug)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use serde::Serialize;
+use tumble_sim::scheme::Imperfection;
 
 use super::Refusal;
 use super::output::{self, Progress};
@@ -79,6 +80,10 @@ struct LimitsArguments {
     /// Leave out the table of imperfections
     #[arg(long)]
     nominal_only: bool,
+    /// Instead of all tables: both schemes and references with this imperfection (may be given several times), say `fence=0.1`,
+    /// `crooked_box=0.02`, `by_hand=2`, `wobble=1`; `tumble simulate --help` has the words
+    #[arg(long, value_name = "WORD[=SIZE]", value_parser = imperfection)]
+    imperfection: Vec<Imperfection>,
     /// Run the references (batch, gravity) on the same sessions as well
     #[arg(long)]
     references: bool,
@@ -105,9 +110,21 @@ struct LimitsReport {
     imperfect: Vec<ScenarioSummary>,
 }
 
+fn imperfection(text: &str) -> Result<Imperfection, String> {
+    let (word, size) = text.split_once('=').map_or((text, None), |(word, size)| (word, Some(size)));
+    let size =
+        size.map(|size| size.parse::<f64>().map_err(|error| format!("`{size}` is no size: {error}"))).transpose()?;
+    Imperfection::parse(word, size).ok_or_else(|| format!("`{word}` is no imperfection"))
+}
+
 fn limits(arguments: &LimitsArguments) -> Result<(), Refusal> {
-    let nominal = run_all(arguments, &Scenario::nominal(), true);
-    let imperfect = if arguments.nominal_only { Vec::new() } else { run_all(arguments, &Scenario::imperfect(), false) };
+    let asked = !arguments.imperfection.is_empty();
+    let nominal = if asked { Vec::new() } else { run_all(arguments, &Scenario::nominal(), true) };
+    let imperfect = match (asked, arguments.nominal_only) {
+        (true, _) => run_all(arguments, &Scenario::with(&arguments.imperfection), false),
+        (false, true) => Vec::new(),
+        (false, false) => run_all(arguments, &Scenario::imperfect(), false),
+    };
     let report = LimitsReport {
         format: "tumble-study-limits",
         version: 1,

@@ -112,14 +112,14 @@ fn navigation(text: &mut String, scenario: &ScenarioSummary) -> fmt::Result {
 }
 
 fn short(text: &mut String, scenarios: &[ScenarioSummary]) -> fmt::Result {
-    writeln!(text, "imperfections, double turns, rms errors (share within 2 sigma)")?;
-    write!(text, "  {:<9} {:<21}", "reference", "")?;
+    writeln!(text, "imperfections, rms errors (share within 2 sigma)")?;
+    write!(text, "  {:<6} {:<9} {:<21}", "turns", "reference", "")?;
     for group in scenarios.iter().take(1).flat_map(|scenario| &scenario.groups) {
         write!(text, " {:>24}", format!("{}, {}", group.group, group.unit))?;
     }
     writeln!(text, " {:>7} {:>9}", "NEES", "accepted")?;
     for scenario in scenarios {
-        write!(text, "  {:<9} {:<21}", scenario.reference, scenario.name)?;
+        write!(text, "  {:<6} {:<9} {:<21}", scenario.scheme, scenario.reference, scenario.name)?;
         for group in &scenario.groups {
             write!(text, " {:>24}", format!("{:.1} ({:.0} %)", group.rms, 100.0 * group.within_2_sigma))?;
         }

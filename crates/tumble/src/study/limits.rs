@@ -98,6 +98,12 @@ impl Scenario {
         scenarios
     }
 
+    /// Both schemes, both references, with these imperfections together.
+    pub fn with(imperfections: &[Imperfection]) -> Vec<Self> {
+        let nominal = Self::nominal().into_iter().filter(|scenario| !scenario.machine);
+        nominal.map(|scenario| Self { name: "as asked", imperfections: imperfections.to_vec(), ..scenario }).collect()
+    }
+
     /// One thing at a time, then all of them; both directions on every face.
     pub fn imperfect() -> Vec<Self> {
         let one = [

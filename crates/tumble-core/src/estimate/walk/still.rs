@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-use super::{Visit, Walk};
+use super::Walk;
+use super::pass::Visit;
 use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
 use crate::estimate::noise::{self, Noise, ROUNDED};
@@ -20,6 +21,8 @@ const RESOLVED: f32 = 1.0 / 600.0;
 pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 /// Level error of an attitude taken from an uncalibrated accelerometer, rad (80 mg of offset, sheet).
 const LEVEL_SIGMA: f32 = 0.1;
+/// A record at rest whose rate is further than this from the rest's own is no rest: noise does that once in 5000 sessions of 300 numbers.
+const UNSTEADY_SIGMAS: f32 = 5.0;
 /// The level's prior in sigmas of the rest's own noise: as wide as `prior::narrow` makes the others.
 const LEVEL_WIDTH: f32 = 30.0;
 
@@ -29,17 +32,49 @@ impl<const S: usize> Walk<S> {
         let force = crate::motion::segmenter::mean_force(tape, first, end);
         if !noise::is_solid(segment, noise.quiet_variance) {
             let own = noise::scatter(tape, segment).force / noise.force_density;
-            self.noise[self.segment].force_scale = own.max(1.0);
+            self.noise[self.pass.segment].force_scale = own.max(1.0);
         }
-        let (scale, duration_s) = (self.noise[self.segment].force_scale, segment.duration_s());
+        let (scale, duration_s) = (self.noise[self.pass.segment].force_scale, segment.duration_s());
         let own = noise.force_density * scale / duration_s + noise.force_rounding;
         let variance = own / (self.gravity * self.gravity);
-        self.level(&self.nominal.accel.compensate(&force), variance, noise);
+        self.level(&self.pass.nominal.accel.compensate(&force), variance, noise);
         if noise::is_solid(segment, noise.quiet_variance) {
-            let rate = crate::motion::segmenter::mean_rate(tape, first, end) - self.nominal.gyro.bias;
-            let to_b = self.attitude.to_rotation_matrix().into_inner().transpose();
-            self.drift.take(&rate, &to_b, self.time_s + 0.5 * duration_s, duration_s);
+            self.compare(tape, segment, own, noise);
         }
+    }
+
+    /// What a rest's means say of biases that drift and wander. `own` is the mean specific force's variance.
+    fn compare<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, own: f32, noise: &Noise) {
+        let (first, end, duration_s) = (usize::from(segment.first), usize::from(segment.end), segment.duration_s());
+        let records = || (first..end).filter_map(|index| tape.record(index));
+        self.pass.steady = (crate::motion::segmenter::mean_rate(tape, first, end), f32::INFINITY);
+        let limit =
+            UNSTEADY_SIGMAS * libm::sqrtf(records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max));
+        self.pass.steady.1 = limit;
+        let (sum, time_s) = records()
+            .filter(|record| self.is_steady(record))
+            .fold((Vector3::zeros(), 0.0), |(sum, time_s), record| (sum + record.rotation_rad, time_s + record.dt_s));
+        let t_s = self.pass.time_s + 0.5 * duration_s;
+        if time_s > 0.0 {
+            let to_b = self.pass.attitude.to_rotation_matrix().into_inner().transpose();
+            let left = sum / time_s - self.pass.nominal.gyro.bias;
+            self.pass.drift.take(&left, &to_b, t_s, time_s);
+            let left = left - noise.bias_slope * t_s - to_b * self.pass.nominal.earth_rad_s;
+            self.pass.rate_walk.take(&left.into(), noise.rate_density / time_s + noise.rate_rounding, t_s);
+        }
+        // On another face every number of the accelerometer is another.
+        if self.pass.visit.is_none() {
+            self.pass.force_walk.restart();
+        }
+        let force = crate::motion::segmenter::mean_force(tape, first, end);
+        let left = self.pass.nominal.accel.compensate(&force).norm() - self.gravity;
+        self.pass.force_walk.take(&[left], own, t_s);
+    }
+
+    /// Does a record show the rest's own rate? A hand's last touch may be slower than what ends a rest.
+    fn is_steady(&self, record: &Record) -> bool {
+        let (mean, limit) = self.pass.steady;
+        (record.rotation_rad / record.dt_s - mean).amax() < limit
     }
 
     /// What a face on the table tells, after its gravity has narrowed the attitude: a plate is so sharp an observation
@@ -55,91 +90,94 @@ impl<const S: usize> Walk<S> {
 
     /// Its closures are counted.
     pub(super) fn end_visit(&mut self) {
-        self.visit = None;
-        self.closures.end_visit();
+        self.pass.visit = None;
+        self.pass.closures.end_visit();
     }
 
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
     /// linearisation but the still's own noise (0.1 mrad, whose square is nothing).
     fn level(&mut self, force: &Vector3<f32>, variance: f32, noise: &Noise) {
-        let turn = model::levelling(&(self.attitude * force));
-        self.attitude = UnitQuaternion::new_normalize((turn * self.attitude).into_inner());
-        let before = core::mem::replace(&mut self.level_variance, variance);
-        if !self.aligned {
+        let turn = model::levelling(&(self.pass.attitude * force));
+        self.pass.attitude = UnitQuaternion::new_normalize((turn * self.pass.attitude).into_inner());
+        let before = core::mem::replace(&mut self.pass.level_variance, variance);
+        if !self.pass.aligned {
             self.align();
             return;
         }
         let turn = turn.scaled_axis();
         self.filter.shift(Block::Attitude, &-turn);
-        if let Some(hinge) = self.hinge.take() {
-            let expected = before + variance + noise.rate_density * noise.motion_scale * self.move_s;
+        if let Some(hinge) = self.pass.hinge.take() {
+            let expected = before + variance + noise.rate_density * noise.motion_scale * self.pass.move_s;
             self.noise[hinge].hinge_nis = turn.norm_squared() / expected;
         }
     }
 
     /// Starts anew: heading is zero here by definition, and what is known in frame n is known no longer.
     fn align(&mut self) {
-        self.aligned = true;
+        self.pass.aligned = true;
         // No wider than what it was levelled by: the accelerometer under this pass's prior, and the rest's own noise.
-        let own = LEVEL_WIDTH * libm::sqrtf(self.level_variance);
-        let level = libm::hypotf(2.0 * self.width, own).min(LEVEL_SIGMA);
+        let own = LEVEL_WIDTH * libm::sqrtf(self.pass.level_variance);
+        let level = libm::hypotf(2.0 * self.pass.width, own).min(LEVEL_SIGMA);
         self.filter.reset(Block::Attitude, 0, 0.0, level);
         self.filter.reset(Block::Attitude, 1, 0.0, level);
         self.filter.reset(Block::Attitude, 2, 0.0, 0.0);
-        self.table_known = false;
-        self.chains += 1;
-        if self.chains > 1 {
+        self.pass.table_known = false;
+        self.pass.chains += 1;
+        if self.pass.chains > 1 {
             // The first still's heading is lost, and with it where the Earth's rotation points.
-            self.nominal.earth_rad_s = Vector3::zeros();
-            self.facets = Facets::default();
+            self.pass.nominal.earth_rad_s = Vector3::zeros();
+            self.pass.facets = Facets::default();
         }
         for axis in 0..3 {
-            self.filter.reset(Block::Earth, axis, -self.nominal.earth_rad_s[axis], EARTH_SIGMA);
+            self.filter.reset(Block::Earth, axis, -self.pass.nominal.earth_rad_s[axis], EARTH_SIGMA);
         }
         self.filter.reset(Block::Fence, 0, 0.0, 0.0);
     }
 
     fn plate(&mut self, face: Face, noise: &Noise) {
         let Some(sigma) = noise.facet_sigma_rad else { return };
-        let normal = self.attitude * face.normal();
-        if !self.facets.admits(&normal) {
+        let normal = self.pass.attitude * face.normal();
+        if !self.pass.facets.admits(&normal) {
             return;
         }
-        if self.visit.is_none_or(|visit| visit.face != face) {
-            // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
-            let to_n = self.attitude.to_rotation_matrix().into_inner();
-            self.facets.take(&face.normal(), &normal, &to_n, self.level_variance);
+        let anew = self.pass.visit.is_none_or(|visit| visit.face != face);
+        // By the nominal alone, which is levelled by this rest: the state is still under its wide prior on the first faces.
+        let to_n = self.pass.attitude.to_rotation_matrix().into_inner();
+        // A bias that walks is off by q T/6 about its own mean, which leans what is levelled by it.
+        let walked = noise.force_walk * self.pass.session_s / (6.0 * self.gravity * self.gravity);
+        self.pass.facets.take(anew, &face.normal(), &to_n, self.pass.level_variance + walked);
+        if anew {
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
-        let plane = face.plane().map(|axis| self.attitude * axis);
-        let contact = CONTACT_SIGMA.max(RESOLVED * self.width);
+        let plane = face.plane().map(|axis| self.pass.attitude * axis);
+        let contact = CONTACT_SIGMA.max(RESOLVED * self.pass.width);
         let variance = contact * contact;
-        if !self.plated {
+        if !self.pass.plated {
             return;
         }
         let plate = model::plate(&normal, &plane);
         for (axis, Observation { residual, row }) in plate.into_iter().enumerate() {
-            if self.table_known {
+            if self.pass.table_known {
                 self.filter.observe(&row.negated().with(Block::Table, axis, 1.0), residual, variance);
             } else {
                 self.filter.copy_to(Block::Table, axis, &row, residual, variance);
             }
         }
-        self.table_known = true;
+        self.pass.table_known = true;
     }
 
     fn stop(&mut self, face: Face, noise: &Noise) {
-        let normal = self.attitude * face.normal();
+        let normal = self.pass.attitude * face.normal();
         let variance = noise.stop_sigma_rad * noise.stop_sigma_rad;
-        if let Some(visit) = self.visit.as_mut().filter(|visit| visit.face == face) {
+        if let Some(visit) = self.pass.visit.as_mut().filter(|visit| visit.face == face) {
             let turned = libm::fabsf(visit.turned_rad);
-            let observation = model::fence(&self.attitude, &visit.first_stop, &normal);
+            let observation = model::fence(&self.pass.attitude, &visit.first_stop, &normal);
             if turned > core::f32::consts::PI && libm::fabsf(observation.residual) < WHOLE_TURN {
                 let whole = libm::roundf(visit.turned_rad / core::f32::consts::TAU) * core::f32::consts::TAU;
                 let own = core::mem::take(&mut visit.noise);
                 visit.turned_rad = 0.0;
                 let left = observation.residual - core::mem::replace(&mut visit.residual, observation.residual);
-                self.closures.take(face.axis(), -whole, left, own, variance);
+                self.pass.closures.take(face.axis(), -whole, left, own, variance);
                 self.close(&observation, variance);
             }
             // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
@@ -149,54 +187,50 @@ impl<const S: usize> Walk<S> {
         }
         self.end_visit();
         self.filter.copy_to(Block::Fence, 0, &model::heading(&normal), 0.0, variance);
-        self.visit = Some(Visit { face, first_stop: self.attitude, turned_rad: 0.0, noise: 0.0, residual: 0.0 });
+        self.pass.visit =
+            Some(Visit { face, first_stop: self.pass.attitude, turned_rad: 0.0, noise: 0.0, residual: 0.0 });
     }
 
     fn close(&mut self, observation: &Observation, variance: f32) {
         self.filter.observe(&observation.row, observation.residual, variance);
-        self.sums.closed.0 += observation.residual * observation.residual;
-        self.sums.closed.1 += 1.0;
+        self.pass.sums.closed.0 += observation.residual * observation.residual;
+        self.pass.sums.closed.1 += 1.0;
     }
 
     pub(super) fn rest(&mut self, segment: &Segment, record: &Record, noise: &Noise) {
-        let solid = noise::is_solid(segment, noise.quiet_variance);
+        let solid = noise::is_solid(segment, noise.quiet_variance) && self.is_steady(record);
         if !solid {
             self.turn(record, &Vector3::zeros(), None);
-            core::mem::take(&mut self.group).propagate(&mut self.filter, noise.rate_density);
+            core::mem::take(&mut self.pass.group).propagate(&mut self.filter, noise.rate_density);
         }
-        let to_n = self.attitude.to_rotation_matrix().into_inner();
-        let own = noise.force_density / record.dt_s * self.noise[self.segment].force_scale;
+        let to_n = self.pass.attitude.to_rotation_matrix().into_inner();
+        let own = noise.force_density / record.dt_s * self.noise[self.pass.segment].force_scale;
         // Coherent over the rest: as white noise it has its variance times the number of records.
         let rounding = noise.force_rounding * segment.duration_s() / record.dt_s;
         let variance = own + rounding + ROUNDED * FORCE_UNIT_MPS2 * FORCE_UNIT_MPS2;
-        let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
-        let parts = self.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
+        let parts = self.pass.now.gravity(record, &to_n, self.gravity, &Matrix3::zeros());
         let observation = parts.observation(self.gravity, None);
         let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
-        if self.record > 0 {
+        if self.pass.record > 0 {
             for innovation in &innovations {
-                self.sums.rest.0 += innovation.nis();
-                self.sums.rest.1 += 1.0;
+                self.pass.sums.rest.0 += innovation.nis();
+                self.pass.sums.rest.1 += 1.0;
             }
-        } else if self.last_rest_us > 0 {
-            self.sums.force_walk.take(&innovations[2], since);
         }
         if solid {
-            self.rest_rate(segment, record, &to_n.transpose(), noise);
+            self.rest_rate(record, &to_n.transpose(), noise);
         }
     }
 
-    fn rest_rate(&mut self, segment: &Segment, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
-        let rounded = ANGLE_UNIT_RAD / record.dt_s;
-        let density = noise.rate_density + noise.rate_rounding * noise.solid_s;
-        let variance = density / record.dt_s + ROUNDED * rounded * rounded;
-        let first = self.record == 0;
-        let since = segment.start_us.saturating_sub(self.last_rest_us) as f32 * 1e-6;
-        let observation = self.now.rest_rate(record, to_b);
-        let innovations = self.filter.observe_vector(&observation.rows, &observation.residual, variance);
-        if first && self.last_rest_us > 0 {
-            innovations.iter().for_each(|innovation| self.sums.rate_walk.take(innovation, since));
-        }
-        self.last_rest_us = segment.end_us;
+    fn rest_rate(&mut self, record: &Record, to_b: &Matrix3<f32>, noise: &Noise) {
+        let variance = rate_variance(record, noise) + noise.rate_rounding * noise.solid_s / record.dt_s;
+        let observation = self.pass.now.rest_rate(record, to_b);
+        self.filter.observe_vector(&observation.rows, &observation.residual, variance);
     }
+}
+
+/// Of a record's mean rate, (rad/s)².
+fn rate_variance(record: &Record, noise: &Noise) -> f32 {
+    let rounded = ANGLE_UNIT_RAD / record.dt_s;
+    noise.rate_density / record.dt_s + ROUNDED * rounded * rounded
 }

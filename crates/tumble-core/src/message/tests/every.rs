@@ -20,6 +20,7 @@ pub(super) fn reasons() -> Vec<Reason> {
         Reason::Clipped { channel: 4, samples: 1 },
         Reason::OutOfRange { name: "accel_bias_z", value: 3.5, limit: 1.0 },
         Reason::PoorFit { nis_per_dof: 9.3 },
+        Reason::Unsettled { sigmas: 27.0 },
         Reason::NotObservable { name: "gyro_correction_xy" },
         Reason::Uncertain { name: "gyro_correction_zz", sigma: 2e-3, limit: 1e-3 },
         Reason::BiasDrift { axis: 1, drift_rad_s: 0.001 },

@@ -34,7 +34,8 @@ struct Leg<'a> {
 #[derive(Clone, Copy)]
 struct Plated {
     face: Face,
-    /// Unknowns of its wobble.
+    /// Unknowns of the face's own error and of its wobble.
+    facet: usize,
     wobble: usize,
     /// Of one component of a reading, rad².
     variance: f64,
@@ -49,23 +50,27 @@ impl Leg<'_> {
 }
 
 impl Plated {
-    fn normal(&self) -> Vector3<f64> {
-        self.face.normal().cast()
-    }
-
-    /// What turns with the box, frame b.
-    fn leaning(&self, x: &[f64]) -> Vector3<f64> {
+    /// The face's normal with its error and what turns with the box of a wobble, frame b.
+    fn normal(&self, x: &[f64]) -> Vector3<f64> {
         let plane = self.face.plane();
-        plane[0].cast() * x[self.wobble] + plane[1].cast() * x[self.wobble + 1]
+        let leaning = |axis: usize| plane[axis].cast() * (x[self.facet + axis] + x[self.wobble + axis]);
+        self.face.normal().cast() + leaning(0) + leaning(1)
     }
 }
 
 /// The block of all residuals between two rests, whitened together: a mean of gravity and the attitude at the end share the
 /// gyroscope's noise up to then.
-pub(super) fn link<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, from: Rest, to: Rest) -> Block<'a> {
+/// `facet`: unknowns of the error of the face that the first of them is on.
+pub(super) fn link<'a>(
+    setting: &Setting<'a>,
+    unknowns: &mut Unknowns,
+    from: Rest,
+    to: Rest,
+    facet: Option<usize>,
+) -> Block<'a> {
     let stretches = &setting.stretches[from.stretch + 1..to.stretch];
     let duration_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
-    let mut face = setting.plate_known(from).then(|| setting.stretches[from.stretch].segment.face()).flatten();
+    let mut face = setting.stretches[from.stretch].segment.face().zip(facet).filter(|_| setting.plate_known(from));
     let mut legs: Vec<Leg> = Vec::new();
     for stretch in stretches {
         face = face.filter(|_| matches!(stretch.segment.kind, Kind::OnTable { .. }));
@@ -79,9 +84,11 @@ pub(super) fn link<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, from: Res
     // All that is shared: both corrections and the lever.
     let depends = (GYRO..LEVER + 3).chain(from.all()).chain(to.all()).chain(from.earth..from.earth + 3);
     let depends = depends.chain(from.table..from.table + 2);
-    let wobbles = legs.iter().filter_map(|leg| leg.plated).flat_map(|plate| plate.wobble..plate.wobble + 2);
+    let plates = legs.iter().filter_map(|leg| leg.plated);
+    let wobbles = plates.flat_map(|plate| plate.wobble..plate.wobble + 2);
+    let facets = legs.iter().find_map(|leg| leg.plated).into_iter().flat_map(|plate| plate.facet..plate.facet + 2);
     let pivots = legs.iter().filter_map(|leg| leg.pivot).flat_map(|first| first..first + 3);
-    let depends: Vec<usize> = depends.chain(pivots).chain(wobbles).collect();
+    let depends: Vec<usize> = depends.chain(pivots).chain(facets).chain(wobbles).collect();
     Block::new(depends, move |x| {
         let residual = residual(&legs, x, from, to, gravity, duration_s);
         let white = whitener.as_ref().and_then(|whitener| whitener.solve_lower_triangular(&residual));
@@ -107,13 +114,14 @@ fn leg<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, stretch: &'a Stretch,
 }
 
 /// What of a wobble does not turn with the box is coherent: its variance counts once for every reading of the turn (`walk.rs`).
-fn plated(setting: &Setting, unknowns: &mut Unknowns, face: Face, leg: &Leg) -> Plated {
+fn plated(setting: &Setting, unknowns: &mut Unknowns, (face, facet): (Face, usize), leg: &Leg) -> Plated {
     let square = |sigma: f32| f64::from(sigma).powi(2);
     let wobble = square(setting.noise.wobble_sigma_rad);
     let coherent = square(setting.noise.rocking_sigma_rad) + f64::from(walk::UNSTEADY) * wobble;
     let readings = leg.stretch.intervals.len() as f64 / (leg.group * usize::from(walk::PLATED)) as f64;
     Plated {
         face,
+        facet,
         wobble: unknowns.add_with_prior(2, wobble.sqrt()),
         variance: square(walk::WHITE) + coherent * readings.max(1.0),
     }
@@ -143,7 +151,7 @@ fn covariance(legs: &[Leg], gravity: f64, kind: MeanNoise) -> DMatrix<f64> {
     walked::covariance(&readings, &groups, walked, kind)
 }
 
-/// Of every group the mean of `R (A (f − a) − L l) − g ẑ` and, where the plate is looked at, of `(R n)ₓᵧ + (R w)ₓᵧ − p`, then `log(R₁ R₂ᵀ)` of the carried against the next rest's attitude.
+/// Of every group the mean of `R (A (f − a) − L l) − g ẑ` and, where the plate is looked at, of `(R (n + e + w))ₓᵧ − p`, then `log(R₁ R₂ᵀ)` of the carried against the next rest's attitude.
 fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duration_s: f64) -> DVector<f64> {
     let (gyro, accel) = (Globals::gyro(x), Globals::accel(x));
     let biases = [from, to].map(|rest| rest.vector(x, rest.rate_bias()));
@@ -164,7 +172,7 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
                 let earth = UnitQuaternion::from_scaled_axis(earth * -dt_s);
                 if let Some(lever) = &lever {
                     let middle = rotation * turn.powf(0.5);
-                    face += leg.plated.map_or_else(Vector3::zeros, |plate| middle * plate.normal()) * dt_s;
+                    face += leg.plated.map_or_else(Vector3::zeros, |plate| middle * plate.normal(x)) * dt_s;
                     let swung = swung(lever, &(gyro * (interval.smooth_rate - bias)), &(gyro * interval.slope));
                     impulse += middle * (accel * (interval.force - force_bias) - swung) * dt_s;
                 }
@@ -175,9 +183,8 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
             if lever.is_some() {
                 residual.extend_from_slice((impulse / seconds - Vector3::z() * gravity).as_slice());
             }
-            if let Some(plate) = leg.plate(number, group.len()) {
-                let wobbling = face / seconds + rotation * plate.leaning(x);
-                residual.extend((0..2).map(|axis| wobbling[axis] - x[from.table + axis]));
+            if leg.plate(number, group.len()).is_some() {
+                residual.extend((0..2).map(|axis| face[axis] / seconds - x[from.table + axis]));
             }
         }
     }

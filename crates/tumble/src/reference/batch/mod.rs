@@ -60,13 +60,12 @@ pub(crate) struct Setting<'a> {
 }
 
 impl Setting<'_> {
-    /// Is the plate believed in the turns that follow a rest? As on the device: of a box found square, three faces seen.
+    /// Is the plate believed in the turns that follow a rest? As on the device: of a box called square, three faces seen.
     fn plate_known(&self, rest: Rest) -> bool {
         let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.segment.face());
         let seen = faces.fold(FaceSet::EMPTY, FaceSet::with);
         let leaning = rest.leaning(self.stretches[rest.stretch].segment.face());
-        let square = self.noise.facet_sigma_rad.is_some() && !self.noise.crooked;
-        square && seen.len() >= 3 && leaning < LEANING
+        self.noise.facet_sigma_rad.is_some() && seen.len() >= 3 && leaning < LEANING
     }
 }
 
@@ -84,11 +83,12 @@ pub fn estimate(
     let last = *rests.last()?;
     let mut blocks = priors(&unknowns, &device.calibration, &rests);
     blocks.extend(rests.iter().flat_map(|rest| still(&setting, *rest)));
-    for pair in rests.windows(2).filter(|pair| pair[0].chain == pair[1].chain) {
+    let (visits, facets) = visits::visits(&setting, &mut unknowns, &rests);
+    blocks.extend(visits);
+    for (pair, facet) in rests.windows(2).zip(facets).filter(|(pair, _)| pair[0].chain == pair[1].chain) {
         blocks.extend(walk(&setting, pair[0], pair[1]));
-        blocks.push(link::link(&setting, &mut unknowns, pair[0], pair[1]));
+        blocks.push(link::link(&setting, &mut unknowns, pair[0], pair[1], facet));
     }
-    blocks.extend(visits::visits(&setting, &mut unknowns, &rests));
     blocks.extend(unknowns.priors());
     let solution = minimise(&blocks, unknowns.x, &unknowns.steps);
     let covariance = solution.covariance?;

@@ -22,9 +22,13 @@ struct Visit {
     turned_rad: f64,
 }
 
-/// Blocks of all visits; the bookkeeping is the device's (`walk.rs`).
-pub(super) fn visits<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, rests: &[Rest]) -> Vec<Block<'a>> {
-    let mut blocks = Vec::new();
+/// Blocks of all visits, and of each rest the unknowns of its face's error; the bookkeeping is the device's (`walk.rs`).
+pub(super) fn visits<'a>(
+    setting: &Setting<'a>,
+    unknowns: &mut Unknowns,
+    rests: &[Rest],
+) -> (Vec<Block<'a>>, Vec<Option<usize>>) {
+    let (mut blocks, mut facets) = (Vec::new(), Vec::new());
     let mut visit: Option<Visit> = None;
     let mut next = rests.iter().peekable();
     for (index, stretch) in setting.stretches.iter().enumerate() {
@@ -33,13 +37,14 @@ pub(super) fn visits<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, rests: 
                 let kept = visit.take().filter(|visit| visit.face == face);
                 rested(setting, unknowns, *rest, face, kept, &mut blocks)
             });
+            facets.push(visit.as_ref().and_then(|visit| visit.facet));
         } else if let (Kind::OnTable { angle_rad, .. }, true) = (stretch.segment.kind, stretch.is_turn()) {
             visit.iter_mut().for_each(|visit| visit.turned_rad += f64::from(angle_rad));
         } else {
             visit = None;
         }
     }
-    blocks
+    (blocks, facets)
 }
 
 fn rested<'a>(
