@@ -227,13 +227,19 @@ impl<'t, const R: usize, const S: usize> Session<'t, R, S> {
             Action::Estimate => {
                 self.recording = false;
                 self.segmenter.finish(self.tape);
-                self.estimator = Some(Estimator::new(self.tape, self.conditions(self.procedure.setup())));
+                self.begin_estimate();
             }
             Action::StopEstimate => self.estimator = None,
             Action::Store => self.effect(Effect::Store),
             Action::StartVerify => self.verifier = self.in_force.as_ref().map(Verifier::new),
             Action::StopVerify => self.verifier = None,
         }
+    }
+
+    /// Apart from the step: an estimator takes 13 KB, and as much again of this function's stack before it is in its place.
+    #[inline(never)]
+    fn begin_estimate(&mut self) {
+        self.estimator = Some(Estimator::new(self.tape, self.conditions(self.procedure.setup())));
     }
 
     fn effect(&mut self, effect: Effect) {

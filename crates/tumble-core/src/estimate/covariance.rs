@@ -84,6 +84,11 @@ impl Index<(usize, usize)> for Covariance {
 }
 
 impl Covariance {
+    /// Everything is zero.
+    pub fn clear(&mut self) {
+        self.0.fill(Column::ZERO);
+    }
+
     /// The variances.
     pub fn diagonal(&self) -> impl Iterator<Item = f32> + '_ {
         (0..STATES).map(|index| self[(index, index)])

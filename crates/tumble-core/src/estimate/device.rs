@@ -125,18 +125,20 @@ impl<const S: usize> Estimator<S> {
     pub fn new<const R: usize>(tape: &Tape<R, S>, conditions: Conditions) -> Self {
         let noise = Noise::from_rests(tape, conditions.stops, conditions.faces);
         let start = start::nominal(tape, conditions.gravity_mps2);
-        let walk = Walk::new(start, conditions.gravity_mps2, prior::prior(&conditions, &start, &start));
-        Self {
+        let mut new = Self {
             conditions,
             noise,
             start,
-            walk,
+            walk: Walk::new(start, conditions.gravity_mps2),
             passes: 0,
             steps: [1.0; 3],
             facet_step: 1.0,
             bias_wanders: false,
             slope_certain: false,
-        }
+        };
+        prior::begin(&mut new.walk.filter, &conditions, &start, &start);
+        new.walk.restart(start);
+        new
     }
 
     /// Walks up to `records` further.
@@ -159,12 +161,10 @@ impl<const S: usize> Estimator<S> {
             return Ok(Progress::Done(self.estimate(tape, &nominal, converged)));
         }
         self.adapt(tape);
-        let mut prior = prior::prior(&self.conditions, &self.start, &nominal);
-        if self.passes >= 2 {
-            prior::narrow(&mut prior, &self.walk.filter);
-        }
+        let begin = if self.passes >= 2 { prior::begin_narrow } else { prior::begin };
+        begin(&mut self.walk.filter, &self.conditions, &self.start, &nominal);
         let plated = self.walk.pass.facets.agree_or_not();
-        self.walk.restart(nominal, &prior);
+        self.walk.restart(nominal);
         self.walk.pass.plated = plated;
         self.walk.pass.coarse = self.passes < 2;
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))

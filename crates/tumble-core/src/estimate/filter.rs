@@ -112,6 +112,12 @@ impl Filter {
         }
     }
 
+    /// Everything is zero, and certain.
+    pub fn clear(&mut self) {
+        self.state = Column::ZERO;
+        self.covariance.clear();
+    }
+
     /// Forgets a state and starts it anew: what it was correlated with keeps what it learnt.
     pub fn reset(&mut self, block: Block, offset: usize, mean: f32, sigma: f32) {
         let index = block.start() + offset;

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::device::Conditions;
 use super::filter::Filter;
 use super::model::Nominal;
-use super::state::Block;
+use super::state::{Block, STATES};
 use crate::calibration::{Frame, Triad};
 
 /// Prior of a correction element, 1: sheet scale 3 %, cross-axis 2 %, and a chip that sits askew in its box by 3°.
@@ -20,9 +20,10 @@ const LEVER_SIGMA_M: f32 = 0.05;
 const NARROWED: f32 = 30.0;
 const NARROWEST: f32 = 2e-5;
 
-/// The prior about a nominal: its mean stays at the start, whatever the nominal has become.
-pub fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Filter {
-    let mut filter = Filter::default();
+/// Makes of a filter the prior about a nominal: its mean stays at the start, whatever the nominal has become. In place: a second filter
+/// would take 8 KB of a microcontroller's stack.
+pub fn begin(filter: &mut Filter, conditions: &Conditions, start: &Nominal, nominal: &Nominal) {
+    filter.clear();
     let mut set = |block, sigma: f32, start: &Triad, now: &Triad| {
         for i in 0..3 {
             for j in 0..3 {
@@ -40,18 +41,19 @@ pub fn prior(conditions: &Conditions, start: &Nominal, nominal: &Nominal) -> Fil
         filter.reset(Block::AccelBias, axis, start.accel.bias[axis] - nominal.accel.bias[axis], ACCEL_BIAS_SIGMA);
         filter.reset(Block::Lever, axis, 0.0, LEVER_SIGMA_M);
     }
-    filter
 }
 
-/// Replaces the prior of what is well determined by one about the last pass's result, `NARROWED` times its sigma wide: it
-/// adds a thousandth to what the data say, and spares `f32` the collapse of a variance by seven orders of magnitude.
-pub fn narrow(prior: &mut Filter, posterior: &Filter) {
+/// As [`begin`], but of what is well determined the prior is one about the last pass's result, `NARROWED` times its sigma wide: it adds a
+/// thousandth to what the data say, and spares `f32` the collapse of a variance by seven orders of magnitude.
+pub fn begin_narrow(filter: &mut Filter, conditions: &Conditions, start: &Nominal, nominal: &Nominal) {
+    let mut found = [0.0f32; STATES];
+    found.iter_mut().zip(filter.covariance().diagonal()).for_each(|(found, variance)| *found = variance.max(0.0));
+    begin(filter, conditions, start, nominal);
     for block in [Block::GyroCorrection, Block::AccelCorrection, Block::AccelBias, Block::GyroBias] {
         for (offset, index) in block.range().enumerate() {
-            let found = posterior.covariance()[(index, index)].max(0.0);
-            let narrowed = NARROWED * libm::sqrtf(found).max(NARROWEST);
-            if narrowed * narrowed < prior.covariance()[(index, index)] {
-                prior.reset(block, offset, 0.0, narrowed);
+            let narrowed = NARROWED * libm::sqrtf(found[index]).max(NARROWEST);
+            if narrowed * narrowed < filter.covariance()[(index, index)] {
+                filter.reset(block, offset, 0.0, narrowed);
             }
         }
     }

@@ -43,10 +43,10 @@ pub struct Walk<const S: usize> {
 }
 
 impl<const S: usize> Walk<S> {
-    /// Nothing walked yet; `filter` holds the prior about the nominal.
-    pub fn new(nominal: Nominal, gravity: f32, filter: Filter) -> Self {
-        let pass = Pass::new(nominal, pass::widest(&filter, gravity), None);
-        Self { filter, noise: Vec::new(), adapting: true, pass, gravity }
+    /// Nothing walked yet; nothing is known until [`Self::filter`] is given a prior and the first pass begun by [`Self::restart`].
+    pub fn new(nominal: Nominal, gravity: f32) -> Self {
+        let pass = Pass::new(nominal, 0.0, None);
+        Self { filter: Filter::default(), noise: Vec::new(), adapting: true, pass, gravity }
     }
 
     /// The parameters it linearises about.
@@ -54,11 +54,11 @@ impl<const S: usize> Walk<S> {
         &self.pass.nominal
     }
 
-    /// Starts the next pass about new parameters; `filter` holds the prior about them. What is known of each segment's noise stays,
-    /// and whether it is still learnt. In place: a new `Walk` on the stack would take 11 KB, twice where moves are not elided.
-    pub fn restart(&mut self, nominal: Nominal, prior: &Filter) {
-        self.filter.clone_from(prior);
-        self.pass = Pass::new(nominal, pass::widest(prior, self.gravity), self.pass.sums.turn_noise.prior());
+    /// Starts the next pass about new parameters; [`Self::filter`] holds the prior about them. What is known of each segment's noise stays,
+    /// and whether it is still learnt.
+    pub fn restart(&mut self, nominal: Nominal) {
+        let width = pass::widest(&self.filter, self.gravity);
+        self.pass = Pass::new(nominal, width, self.pass.sums.turn_noise.prior());
     }
 
     /// The widest prior sigma of this pass, 1.
