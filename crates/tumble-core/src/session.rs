@@ -236,10 +236,11 @@ impl<'t, const R: usize, const S: usize> Session<'t, R, S> {
         }
     }
 
-    /// Apart from the step: an estimator takes 13 KB, and as much again of this function's stack before it is in its place.
+    /// Apart from the step, whose stack would hold those 13 KB on every way through it.
     #[inline(never)]
     fn begin_estimate(&mut self) {
-        self.estimator = Some(Estimator::new(self.tape, self.conditions(self.procedure.setup())));
+        let conditions = self.conditions(self.procedure.setup());
+        Estimator::begin(&mut self.estimator, self.tape, conditions);
     }
 
     fn effect(&mut self, effect: Effect) {

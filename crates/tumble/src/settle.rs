@@ -131,7 +131,8 @@ pub fn estimate<const R: usize, const S: usize>(
     conditions: Conditions,
     progress: &mut impl FnMut(f32),
 ) -> Estimated {
-    let mut estimator = Box::new(Estimator::new(tape, conditions));
+    let mut place = Box::new(None);
+    let estimator = Estimator::begin(&mut place, tape, conditions);
     loop {
         match estimator.work(tape, SLICE).map_err(|breakdown| Reason::Arithmetic { place: breakdown.0 })? {
             Progress::Working(share) => progress(share.min(1.0)),

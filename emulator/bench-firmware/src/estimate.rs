@@ -118,8 +118,8 @@ pub fn sessions() {
         for _ in 0..segments {
             let _ = tape.close(feed.segment());
         }
-        let mut estimator = Estimator::new(tape, conditions);
-        let passes = bench_estimate(black_box(&mut estimator), tape);
+        let mut place = None;
+        let passes = bench_estimate(black_box(Estimator::begin(&mut place, tape, conditions)), tape);
         bench_end();
         BENCH_PASSES.store(passes, Ordering::Relaxed);
         bench_feed();

@@ -121,11 +121,16 @@ pub enum Progress {
 }
 
 impl<const S: usize> Estimator<S> {
-    /// Prepares the first pass.
-    pub fn new<const R: usize>(tape: &Tape<R, S>, conditions: Conditions) -> Self {
+    /// Prepares the first pass, in `place`: an estimator takes 13 KB, and every move of it on its way would take as much again of a
+    /// microcontroller's stack.
+    pub fn begin<'p, const R: usize>(
+        place: &'p mut Option<Self>,
+        tape: &Tape<R, S>,
+        conditions: Conditions,
+    ) -> &'p mut Self {
         let noise = Noise::from_rests(tape, conditions.stops, conditions.faces);
         let start = start::nominal(tape, conditions.gravity_mps2);
-        let mut new = Self {
+        let new = place.insert(Self {
             conditions,
             noise,
             start,
@@ -135,7 +140,7 @@ impl<const S: usize> Estimator<S> {
             facet_step: 1.0,
             bias_wanders: false,
             slope_certain: false,
-        };
+        });
         prior::begin(&mut new.walk.filter, &conditions, &start, &start);
         new.walk.restart(start);
         new
