@@ -105,9 +105,10 @@ pub fn correlates(bench: &Bench, leftover: &Leftover) -> Vec<(String, f64)> {
 /// Shapes of circumstance, not of the instant's force or rate, that explain as much as a name which has this evidence: on this
 /// recording the two are one. (A bias in proportion to a temperature that rose all the time is one that drifts with time.)
 pub fn circumstances(bench: &Bench, instead: &[Leftover], evidence: f64) -> Vec<String> {
-    const FAMILIES: [&str; 7] = [
+    const FAMILIES: [&str; 8] = [
         "time",
         "slow oscillation",
+        "temperature",
         "heading",
         "the face before",
         "the side before",
@@ -118,12 +119,15 @@ pub fn circumstances(bench: &Bench, instead: &[Leftover], evidence: f64) -> Vec<
     // the twentieth of the whole by which an alias may fall short of being the same.
     let base = instead.iter().map(|leftover| leftover.base).fold(f64::NEG_INFINITY, f64::max);
     let of_alias = 2.0 * TIE + (1.0 - ALIAS) * (evidence - base).max(0.0);
+    let family = |block: &Block| bench.families[block.family].0.name.as_str();
     let mut tied: Vec<(f64, String)> = Vec::new();
     for leftover in instead {
         let own = leftover.ranking.iter().map(|ranked| (ranked, TIE));
-        for ((block, gain), gap) in own.chain(leftover.aliases.iter().map(|ranked| (ranked, of_alias))) {
+        // What follows temperature is one of four names, and an alias of them no other circumstance.
+        let aliases = leftover.aliases.iter().filter(|(block, _)| family(block) != "temperature");
+        for ((block, gain), gap) in own.chain(aliases.map(|ranked| (ranked, of_alias))) {
             let reached = leftover.base + gain;
-            if reached > evidence - gap && FAMILIES.contains(&bench.families[block.family].0.name.as_str()) {
+            if reached > evidence - gap && FAMILIES.contains(&family(block)) {
                 tied.push((reached, shape(bench, block)));
             }
         }

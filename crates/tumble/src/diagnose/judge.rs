@@ -5,9 +5,10 @@
 //! 1, or where the shapes are no more than chance themselves. Several names at once are a coincidence that one thing without a
 //! name is not: each further one is one of C, and costs ln C.
 
+use super::catalogue::earth_rotation;
 use super::exhibits;
 use super::findings::{Finding, TIE};
-use super::search::bench::{Accepted, Bench};
+use super::search::bench::{Accepted, Bench, HEALTHY, with_walks};
 use super::search::select::Selection;
 use super::search::unknown::{self, Leftover};
 use super::search::wandering;
@@ -95,6 +96,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.demoted.push(finding);
         } else {
             finding.found.tied_with_shapes = exhibits::circumstances(bench, &shapes.at, selection.evidence);
+            finding.found.tied_with_shapes.extend(earth_rotation::tied_with(&finding.found));
             judged.named.push(finding);
         }
     }
@@ -133,7 +135,7 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
 
 /// What shapes without a name do in the place of accepted effects.
 struct Instead {
-    /// At the null's noise and at the noise in force: which one a shape needs is its own affair. At least one.
+    /// At the null's noise, at the noise in force and at the least: which one a shape needs is its own affair. At least one.
     at: Vec<Leftover>,
 }
 
@@ -151,13 +153,18 @@ impl Instead {
     }
 }
 
-/// A walk is a part of the noise in force: in its place that is the null's.
+/// A walk is a part of the noise in force: in its place that is the null's. What changes with time has raised the null's as far as a
+/// healthy bias wanders, and with a shape for it the least is enough.
 fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Instead {
     let in_force = bench.twin.noise;
     let walks = of.iter().any(|&k| bench.candidates[bench.accepted[k].candidate].walk.is_some());
+    let least = with_walks(&selection.null_noise, HEALTHY[0], HEALTHY[0]);
     let mut noises = vec![selection.null_noise];
     if !walks && in_force != selection.null_noise {
         noises.push(in_force);
+    }
+    if !noises.contains(&least) {
+        noises.push(least);
     }
     let weigh = |noise| {
         bench.twin.noise = noise;

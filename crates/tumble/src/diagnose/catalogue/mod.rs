@@ -9,7 +9,7 @@ mod accel_internal_lever_arms;
 mod accel_lever_arm;
 mod accel_quadratic;
 mod accel_scale_temperature;
-mod earth_rotation;
+pub mod earth_rotation;
 mod gyro_accel_lag;
 mod gyro_bias_random_walk;
 mod gyro_bias_step;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::generic::{Family, remembered};
+use super::generic::{Family, remembered, up};
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::influence::{Influence, Push};
@@ -41,8 +41,7 @@ pub(super) fn last_side(twin: &Twin, gyro: bool) -> Family {
         .moments
         .iter()
         .map(|moment| {
-            let up = moment.attitude.inverse_transform_vector(&Vector3::z());
-            side = up.zip_map(&side, |up: f64, side| if up.abs() > LOADED { up.signum() } else { side });
+            side = up(moment).zip_map(&side, |up: f64, side| if up.abs() > LOADED { up.signum() } else { side });
             side
         })
         .collect();

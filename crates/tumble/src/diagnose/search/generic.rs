@@ -25,35 +25,36 @@ pub struct Family {
 
 type Shape = Box<dyn Fn(&Moment) -> f64 + Send + Sync>;
 type Shapes = Vec<(String, Shape)>;
-/// A family's name, and its shapes for a recording of this length (s).
-type Group = (&'static str, fn(f64) -> Shapes);
+/// A family's name, and its shapes for a recording of this length (s), on the gyroscope or not.
+type Group = (&'static str, fn(f64, bool) -> Shapes);
 
 /// All families for a recording.
 pub fn families(twin: &Twin) -> Vec<Family> {
     let end_s = twin.samples.last().map_or(1.0, |raw| raw.t_s).max(1.0);
     let groups: Vec<Group> = vec![
-        ("specific force", |_| vector("f", |moment| moment.force / G)),
-        ("products of forces", |_| pairs("f", |moment| moment.force / G)),
-        ("cubes of forces", |_| cubes("f", |moment| moment.force / G)),
-        ("rate", |_| vector("w", |moment| moment.rate)),
-        ("products of rates", |_| pairs("w", |moment| moment.rate)),
-        ("cubes of rates", |_| cubes("w", |moment| moment.rate)),
-        ("size of the rate", |_| sizes()),
-        ("angular acceleration", |_| vector("dw/dt", |moment| moment.acceleration)),
-        ("force times rate", |_| mixed()),
+        ("specific force", |_, _| vector("f", |moment| moment.force / G)),
+        ("products of forces", |_, _| pairs("f", |moment| moment.force / G)),
+        ("cubes of forces", |_, _| cubes("f", |moment| moment.force / G)),
+        ("rate", |_, _| vector("w", |moment| moment.rate)),
+        ("products of rates", |_, _| pairs("w", |moment| moment.rate)),
+        ("cubes of rates", |_, _| cubes("w", |moment| moment.rate)),
+        ("size of the rate", |_, _| sizes()),
+        ("angular acceleration", |_, _| vector("dw/dt", |moment| moment.acceleration)),
+        ("force times rate", |_, _| mixed()),
         ("time", trends),
-        ("slow oscillation", oscillations),
-        ("time since the last motion", |_| after_motion()),
-        ("angle of the turn", |_| harmonics()),
-        ("heading", |_| vector("north", north).into_iter().chain(vector("east", east)).collect()),
-        ("temperature", |_| vec![("T".into(), Box::new(|moment: &Moment| moment.warmth_degc) as Shape)]),
+        ("slow oscillation", |end_s, _| oscillations(end_s)),
+        ("time since the last motion", |_, _| after_motion()),
+        ("angle of the turn", |_, _| harmonics()),
+        ("heading", |_, _| heading()),
+        ("temperature", |_, _| temperature()),
     ];
     let mut families = Vec::new();
     for (name, shapes) in groups {
         for gyro in [true, false] {
-            families.push(family(name, gyro, || shapes(end_s)));
+            families.push(family(name, gyro, || shapes(end_s, gyro)));
         }
     }
+    families.push(family("a field of the room", true, || heading().into_iter().chain(vector("up", up)).collect()));
     families.push(before::previous_face(twin));
     families.extend([true, false].map(|gyro| before::last_side(twin, gyro)));
     families.extend([true, false].map(|gyro| memory_of_motion(twin, gyro)));
@@ -183,14 +184,16 @@ fn mixed() -> Shapes {
     (0..3).flat_map(|i| (0..3).map(move |j| pair(i, j))).collect()
 }
 
-fn trends(end_s: f64) -> Shapes {
+/// Of what each triad has a scale for.
+fn trends(end_s: f64, gyro: bool) -> Shapes {
+    let (letter, scaled): (_, fn(&Moment) -> Vector3<f64>) =
+        if gyro { ("w", |moment| moment.rate) } else { ("f", |moment| moment.force / G) };
     let mut shapes: Shapes =
         (1..=3).map(|k| (format!("t^{k}"), Box::new(move |m: &Moment| (m.t_s / end_s).powi(k)) as Shape)).collect();
-    shapes.extend(
-        (0..3).map(|i| {
-            (format!("t*w_{}", AXES[i]), Box::new(move |m: &Moment| (m.t_s / end_s - 0.5) * m.rate[i]) as Shape)
-        }),
-    );
+    shapes.extend((0..3).map(|i| {
+        let drift = move |m: &Moment| (m.t_s / end_s - 0.5) * scaled(m)[i];
+        (format!("t*{letter}_{}", AXES[i]), Box::new(drift) as Shape)
+    }));
     shapes
 }
 
@@ -233,6 +236,22 @@ fn harmonics() -> Shapes {
             ]
         })
         .collect()
+}
+
+/// A bias bends over temperature.
+fn temperature() -> Shapes {
+    vec![
+        ("T".into(), Box::new(|moment: &Moment| moment.warmth_degc) as Shape),
+        ("T^2".into(), Box::new(|moment: &Moment| moment.warmth_degc.powi(2)) as Shape),
+    ]
+}
+
+fn heading() -> Shapes {
+    vector("north", north).into_iter().chain(vector("east", east)).collect()
+}
+
+pub(super) fn up(moment: &Moment) -> Vector3<f64> {
+    moment.attitude.inverse_transform_vector(&Vector3::z())
 }
 
 fn north(moment: &Moment) -> Vector3<f64> {

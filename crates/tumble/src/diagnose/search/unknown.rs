@@ -12,7 +12,7 @@ use super::null::FALSE_ALARMS;
 /// Sizes presumed, in sigmas of a column.
 const SIZES: [f64; 4] = [3.0, 12.0, 50.0, 200.0];
 /// A family with more columns is weighed by its parts alone.
-const WIDEST: usize = 18;
+const WIDEST: usize = 27;
 /// Share of a shape's signal that an effect explains as well, above which the two are the same thing on this recording.
 pub const ALIAS: f64 = 0.95;
 

@@ -44,7 +44,22 @@ pub const FORCE_WALK_FLOOR: f64 = 1e-10;
 const FENCE_RAD: f64 = 0.05 * std::f64::consts::PI / 180.0;
 const SQUARE_RAD: f64 = 20e-6;
 
+/// Length of the means whose differences the device tells white noise by, s: half-second records.
+const RECORD_S: f64 = 0.5;
+/// White noise is not believed to be less than this share of what was measured.
+const LEAST_WHITE: f64 = 0.1;
+
 impl Noise {
+    /// Variance of a mean rate over `duration_s` about the bias in its middle, (rad/s)².
+    pub fn rate_mean(&self, duration_s: f64) -> f64 {
+        of_mean(self.rate_density, self.bias_walk, duration_s)
+    }
+
+    /// Likewise of a mean force, (m/s²)²; `scale` is how much noisier the force is than at rest.
+    pub fn force_mean(&self, duration_s: f64, scale: f64) -> f64 {
+        of_mean(self.force_density * scale, self.force_walk, duration_s)
+    }
+
     /// The same with stops and faces as good as their owner says. What the device found of them may be an effect that it
     /// took for sloppiness: which of the two is the case is for the evidence to say.
     #[must_use]
@@ -77,4 +92,15 @@ impl Noise {
             pivot_sigma_m: PIVOT_SIGMA_M,
         }
     }
+}
+
+/// A walk's mean over T, given the walk at both ends, is their mean with a variance of `qT/12` (Brownian bridge). With b before, b + w after,
+/// `Var w = qT`, and y = b + w/2 + bridge + noise of variance r: `Var y = P + qT/3 + r`, `Cov(b + w, y) = P + qT/2`. A filter that lets b wander
+/// by `qT/2`, takes y as an observation of b with the variance `r − qT/6`, and lets it wander by `qT/2` again comes to the very same.
+/// (The whole of qT before each mean took a tenth off the size of a walk that stands out of the noise.)
+///
+/// r itself was measured by differences of neighbouring means, whose variance is `2r + 2qT/3`: it is less by `qT/3`.
+fn of_mean(density: f64, walk: f64, duration_s: f64) -> f64 {
+    let white = (density - walk * RECORD_S * RECORD_S / 3.0).max(LEAST_WHITE * density);
+    white / duration_s - walk * duration_s / 6.0
 }

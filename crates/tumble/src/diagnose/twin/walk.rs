@@ -86,7 +86,7 @@ impl<'a> Walk<'a> {
         let solid = matches!(stretch.deed, Deed::Rest { .. });
         for index in steps {
             let step = &self.pass.steps.all[index];
-            self.wander(step.end_s, [1.0; 2]);
+            self.wander(step.middle_s, [1.0; 2]);
             if solid {
                 self.observe_rate(stretch, index, step);
             }
@@ -95,6 +95,7 @@ impl<'a> Walk<'a> {
             if !solid {
                 self.propagate(index, step);
             }
+            self.wander(step.end_s, [1.0; 2]);
             self.moved = false;
         }
         self.stand(stretch);
@@ -124,11 +125,12 @@ impl<'a> Walk<'a> {
         }
         for index in steps {
             let step = &self.pass.steps.all[index];
-            self.wander(step.end_s, self.pass.noise.walk_in_motion);
+            self.wander(step.middle_s, self.pass.noise.walk_in_motion);
             if turn && self.aligned && !self.bridge {
                 self.observe_force(stretch, index, step);
             }
             self.propagate(index, step);
+            self.wander(step.end_s, self.pass.noise.walk_in_motion);
         }
     }
 
@@ -151,7 +153,7 @@ impl<'a> Walk<'a> {
 
     fn observe_rate(&mut self, stretch: &Stretch, index: usize, step: &Step) {
         let columns = self.columns;
-        let variance = self.pass.noise.rate_density / step.duration_s;
+        let variance = self.pass.noise.rate_mean(step.duration_s);
         for axis in 0..3 {
             // δM times a rate near zero is left out.
             let observation = Observation::new(step.rate[axis], variance)
@@ -171,7 +173,7 @@ impl<'a> Walk<'a> {
         let columns = self.columns;
         let turning = matches!(stretch.deed, Deed::Turn { .. });
         let scale = self.pass.force_scale.get(stretch.number).copied().unwrap_or(1.0);
-        let variance = self.pass.noise.force_density * scale / step.duration_s;
+        let variance = self.pass.noise.force_mean(step.duration_s, scale);
         let drift =
             if matches!(stretch.deed, Deed::Rest { .. }) { Drive::zeros() } else { step.tilt * step.mean_drive };
         let class = match (turning, self.moved) {
