@@ -134,7 +134,7 @@ pub fn examine(scene: &Scene) -> Gated {
     // What sways at one frequency alone is a table: that gate sees for itself.
     let rocking = rocking::examine(&view, hand.trembles);
     let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
-    let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
+    let line = line::examine(&view, spectra.as_ref(), hand, rocking_hz.map(|frequency| frequency.value));
     gated.take(rocking);
     // Torn readings are a few spikes of one channel: their spectrum is not the noise that lines are told from.
     gated.take(if tears { Outcome { found: None, ..line } } else { line });
