@@ -130,16 +130,9 @@ fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)>
 
 /// A single sample of one channel is a reading gone wrong; a knock that is as short as a sample moves several.
 fn is_shared(view: &View, burst: &Range<usize>) -> bool {
-    let (Some(before), after) = (burst.start.checked_sub(1), burst.end) else { return false };
-    if burst.len() > 1 || after >= view.len() {
-        return burst.len() > 1;
-    }
-    let stands_out = |channel: &usize| {
-        let values = &view.channels[*channel];
-        let size = (values[burst.start] - 0.5 * (values[before] + values[after])).abs();
-        view.sigma[*channel].is_finite() && size > TIMES * view.sigma[*channel]
-    };
-    (0..6).filter(stands_out).count() > 1
+    let between = burst.start > 0 && burst.end < view.len();
+    let stands_out = |channel: &usize| view.bend(*channel, burst.start) > TIMES * view.sigma[*channel];
+    burst.len() > 1 || (between && (0..6).filter(stands_out).count() > 1)
 }
 
 /// What surrounds a place where motion does not change.

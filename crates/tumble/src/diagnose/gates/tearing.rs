@@ -131,11 +131,8 @@ fn spikes(view: &View, channel: usize, count: f64) -> Vec<Spike> {
 
 /// No other channel of the sample jumps by more than a quarter of what this one does, in counts.
 fn alone(view: &View, channel: usize, index: usize) -> bool {
-    let bend = |c: usize| {
-        let v = &view.channels[c];
-        (v[index] - 0.5 * (v[index - 1] + v[index + 1])).abs() / view.step[c].max(1e-9)
-    };
-    let own = bend(channel);
-    let others = (0..6).filter(|c| *c != channel && view.step[*c] > 0.0).map(bend);
+    let counts = |c: usize| view.bend(c, index) / view.step[c].max(1e-9);
+    let own = counts(channel);
+    let others = (0..6).filter(|c| *c != channel && view.step[*c] > 0.0).map(counts);
     others.filter(|other| *other > 0.25 * own).count() <= 1
 }
