@@ -71,6 +71,7 @@ struct Quiet {
     dt_s: f64,
     up: Vector3<f64>,
     means: Vec<[f64; 6]>,
+    taper: Taper,
 }
 
 /// The gate; hands that hold the box (`trembling`) sway it as a table does.
@@ -179,7 +180,8 @@ fn decimated(view: &View, rest: &Rest) -> Quiet {
             out[c] = block.iter().sum::<f64>() / every as f64 - mean;
         }
     }
-    Quiet { dt_s: every as f64 * view.dt_s, up: rest.force.normalize(), means }
+    let taper = Taper::new(count, TAPER);
+    Quiet { dt_s: every as f64 * view.dt_s, up: rest.force.normalize(), means, taper }
 }
 
 /// Over rests of at least one period, weighted by length.
@@ -187,12 +189,11 @@ fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
     let mut all =
         Swing { hz, rests: 0.0, samples: 0.0, across: 0.0, along: 0.0, force: 0.0, product: 0.0, square: 0.0 };
     for rest in rests.iter().filter(|rest| rest.dt_s * rest.means.len() as f64 * hz >= 1.0) {
-        let taper = Taper::new(rest.means.len(), TAPER);
-        let count = taper.gain();
+        let count = rest.taper.gain();
         let mut sums = [[Vector3::zeros(); 2]; 2];
         for (k, values) in rest.means.iter().enumerate() {
             let (sin, cos) = (TAU * hz * rest.dt_s * k as f64).sin_cos();
-            let weight = 2.0 * taper.weights[k] / taper.sum;
+            let weight = 2.0 * rest.taper.weights[k] / rest.taper.sum;
             let (sin, cos) = (sin * weight, cos * weight);
             for (triad, sums) in sums.iter_mut().enumerate() {
                 let value = Vector3::new(values[3 * triad], values[3 * triad + 1], values[3 * triad + 2]);
