@@ -146,7 +146,7 @@ impl Gated {
         let torn = tearing.found.is_some();
         // Bytes torn in neighbouring samples look like knocks.
         if !torn {
-            self.take(shock::examine(view, &tearing.repaired));
+            self.take(shock::examine(view));
         }
         self.take(tearing);
         torn

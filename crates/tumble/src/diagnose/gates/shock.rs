@@ -42,9 +42,9 @@ pub(super) const CARD: Card = Card {
     separate_by: "leave the table alone while it records: what comes again comes from the sensor",
 };
 
-/// The gate; `torn` samples are passed over.
-pub fn examine(view: &View, torn: &[usize]) -> Outcome {
-    let rough = roughness(view, torn);
+/// The gate.
+pub fn examine(view: &View) -> Outcome {
+    let rough = roughness(view);
     let noise = (3..6).map(|c| view.sigma[c]).filter(|s| s.is_finite()).fold(0.0, f64::max);
     let least = LEAST_G.max(TIMES * noise);
     let why = "half a second or more from where motion begins or ends";
@@ -81,7 +81,7 @@ pub fn examine(view: &View, torn: &[usize]) -> Outcome {
 }
 
 /// Length of the force less its running median, g.
-fn roughness(view: &View, torn: &[usize]) -> Vec<f64> {
+fn roughness(view: &View) -> Vec<f64> {
     let half = view.count(MEDIAN_S).max(4);
     let count = view.len();
     let mut squares = vec![0.0; count];
@@ -95,7 +95,6 @@ fn roughness(view: &View, torn: &[usize]) -> Vec<f64> {
             *square += (channel[i] - median).powi(2);
         }
     }
-    torn.iter().for_each(|i| squares[*i] = 0.0);
     squares.into_iter().map(f64::sqrt).collect()
 }
 
