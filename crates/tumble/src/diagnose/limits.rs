@@ -7,7 +7,7 @@ use super::gates::chance::shift_seen;
 use super::search::bench::{Bench, HEALTHY, with_walks};
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
-use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR};
+use super::twin::noise::walk_floor;
 
 /// What the recording could have shown, with 95 % certainty, by the threshold in force.
 ///
@@ -52,8 +52,7 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
     }
     if let Some((gyro, unit_si, unit)) = candidate.walk {
         // What is more than healthy by the first level that counts.
-        let floor = if gyro { BIAS_WALK_FLOOR } else { FORCE_WALK_FLOOR };
-        let limit = (floor * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
+        let limit = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
     }
     // One of its parameters alone, the others zero, at the price of them all; the median over parameters and variants.

@@ -44,7 +44,23 @@ pub const FORCE_WALK_FLOOR: f64 = 1e-10;
 const FENCE_RAD: f64 = 0.05 * std::f64::consts::PI / 180.0;
 const SQUARE_RAD: f64 = 20e-6;
 
+/// The gyroscope's or the accelerometer's.
+pub fn walk_floor(gyro: bool) -> f64 {
+    if gyro { BIAS_WALK_FLOOR } else { FORCE_WALK_FLOOR }
+}
+
 impl Noise {
+    /// How the gyroscope's bias wanders, (rad/s)²/s, or the accelerometer's, (m/s²)²/s.
+    pub fn walk(&self, gyro: bool) -> f64 {
+        if gyro { self.bias_walk } else { self.force_walk }
+    }
+
+    /// The same with one triad's bias wandering as said.
+    #[must_use]
+    pub fn with_walk(&self, gyro: bool, walk: f64) -> Self {
+        if gyro { Self { bias_walk: walk, ..*self } } else { Self { force_walk: walk, ..*self } }
+    }
+
     /// The same with stops and faces as good as their owner says. What the device found of them may be an effect that it
     /// took for sloppiness: which of the two is the case is for the evidence to say.
     #[must_use]
