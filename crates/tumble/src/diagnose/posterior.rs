@@ -4,8 +4,8 @@
 //! estimator took them for (`Noise::trusting`; the one is a guess, in the other an effect passes for sloppy stops), biases that
 //! wander by one of three healthy levels. That is good enough to compare models, which all have it. A sigma that rests on 12
 //! closures is wrong by as much: the truth of a fence of ±0.1° is 0.058°, and taken for 0.05° an asymmetry of the scale was off
-//! by 1.11 sigmas (root mean square) where nothing but stops disturbed it, by 0.65 where they were exact. So each variance has a posterior of its own beside the
-//! accepted effects, over a grid uniform in its logarithm. All covariances are linear in it, so that its mean stands for it,
+//! by 1.11 sigmas (root mean square) where nothing but stops disturbed it, by 0.65 where they were exact. So each variance has a posterior of its own
+//! beside the accepted effects, over a grid uniform in its logarithm. All covariances are linear in it, so that its mean stands for it,
 //! as in the device's `closures.rs`.
 
 use tumble_core::setup::TurnStops;

@@ -9,9 +9,10 @@
 //! p is the geometric mean of the medians of the bins 3 to 12 resolutions off to either side: exact on any flank that falls
 //! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
-//! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates'
-//! scatter from 4 to 15 Hz, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
-//! Where rounding hides the noise (σ < 0.35 steps) it makes lines of its own: such a triad is passed over.
+//! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary
+//! noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates' scatter from 4 to 15 Hz, over 0.3 °/s, or by
+//! noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05). Where rounding hides the noise (σ < 0.35 steps) it
+//! makes lines of its own: such a triad is passed over.
 //!
 //! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
 //! = threshold − 2R (non-central χ²), and A² = 2·p·λ/Σ(Σw)²/Σw², at the noise p of the loudest twentieth of the band.
