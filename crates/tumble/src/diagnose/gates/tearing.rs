@@ -59,14 +59,8 @@ pub fn examine(view: &View) -> Outcome {
         }
     }
     if !tested {
-        return Outcome {
-            limit: untestable(
-                &CARD,
-                "readings",
-                "readings are not whole counts of a known range, or noise alone jumps by 256 counts",
-            ),
-            ..Outcome::default()
-        };
+        let why = "readings are not whole counts of a known range, or noise alone jumps by 256 counts";
+        return Outcome { limit: untestable(&CARD, "readings", why), ..Outcome::default() };
     }
     let why = "where a channel passes a multiple of 256 counts";
     let mut outcome = Outcome { limit: limit(&CARD, 1.0, "readings", why), ..Outcome::default() };
