@@ -36,31 +36,22 @@ struct Spike {
 
 /// The gate.
 pub fn examine(view: &View) -> Outcome {
-    let ranges = [(view.scene.inference.gyro_range_dps, 0..3), (view.scene.inference.accel_range_g, 3..6)];
-    let (mut torn, mut others, mut share, mut channels) = (Vec::new(), 0.03, 0.0_f64, 0u8);
-    let mut tested = false;
-    for (range, triad) in ranges {
-        for channel in triad {
-            let Some(count) = count_of(range, view.step[channel]) else { continue };
-            let noise = view.sigma[channel] / count;
-            if by_noise(noise, view.channels[channel].len()) > 1e-3 {
-                continue;
-            }
-            tested = true;
-            for spike in spikes(view, channel, count) {
-                share = share.max(spike.share);
-                if spike.torn {
-                    channels |= 1 << channel;
-                    torn.push(spike.index);
-                } else {
-                    others += 1.0;
-                }
-            }
-        }
-    }
-    if !tested {
+    let tested = tested(view);
+    if tested.is_empty() {
         let why = "readings are not whole counts of a known range, or noise alone jumps by 256 counts";
         return Outcome { limit: untestable(&CARD, "readings", why), ..Outcome::default() };
+    }
+    let (mut torn, mut others, mut share, mut channels) = (Vec::new(), 0.03, 0.0_f64, 0u8);
+    for (channel, count) in tested {
+        for spike in spikes(view, channel, count) {
+            share = share.max(spike.share);
+            if spike.torn {
+                channels |= 1 << channel;
+                torn.push(spike.index);
+            } else {
+                others += 1.0;
+            }
+        }
     }
     let why = "where a channel passes a multiple of 256 counts";
     let mut outcome = Outcome { limit: limit(&CARD, 1.0, "readings", why), ..Outcome::default() };
@@ -74,6 +65,17 @@ pub fn examine(view: &View) -> Outcome {
         outcome.repaired = torn;
     }
     outcome
+}
+
+/// Channels of whole counts, °/s or g each, in which noise does not pass for a torn reading.
+fn tested(view: &View) -> Vec<(usize, f64)> {
+    let inference = view.scene.inference;
+    let count = |channel: usize| {
+        let range = if channel < 3 { inference.gyro_range_dps } else { inference.accel_range_g };
+        let count = count_of(range, view.step[channel])?;
+        (by_noise(view.sigma[channel] / count, view.len()) <= 1e-3).then_some((channel, count))
+    };
+    (0..6).filter_map(count).collect()
 }
 
 /// One count of a range, by the step where it shows: makers' counts differ from range/2^15 by up to 15 %.
