@@ -86,6 +86,28 @@ pub struct Bench {
     made: Vec<(Noise, std::sync::Arc<Rows>)>,
 }
 
+impl Candidate {
+    /// `place` puts influences among the columns.
+    fn new(effect: &'static Effect, model: Model, mut place: impl FnMut(Vec<Influence>) -> Range<usize>) -> Self {
+        let mut candidate = Self { effect, variants: Vec::new(), walk: None, absent: None };
+        match model {
+            Model::Shift(variants) => {
+                let placed = variants.into_iter().map(|variant| Placed {
+                    setting: variant.setting,
+                    parameters: variant.parameters,
+                    columns: place(variant.influences),
+                    own: variant.own,
+                    at_size: variant.at_size,
+                });
+                candidate.variants = placed.collect();
+            }
+            Model::Walk { gyro, unit_si, unit } => candidate.walk = Some((gyro, unit_si, unit)),
+            Model::Absent(why) => candidate.absent = Some(why),
+        }
+        candidate
+    }
+}
+
 impl Bench {
     /// All candidates for a twin, except those in `without`.
     pub fn new(twin: Twin, without: &[String]) -> Self {
@@ -95,27 +117,8 @@ impl Bench {
             all.extend(more.into_iter().map(Column::from));
             first..all.len()
         };
-        let mut candidates = Vec::new();
-        for effect in STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id)) {
-            let mut candidate = Candidate { effect, variants: Vec::new(), walk: None, absent: None };
-            match (effect.model)(&twin) {
-                Model::Shift(variants) => {
-                    candidate.variants = variants
-                        .into_iter()
-                        .map(|variant| Placed {
-                            setting: variant.setting,
-                            parameters: variant.parameters,
-                            columns: place(variant.influences),
-                            own: variant.own,
-                            at_size: variant.at_size,
-                        })
-                        .collect();
-                }
-                Model::Walk { gyro, unit_si, unit } => candidate.walk = Some((gyro, unit_si, unit)),
-                Model::Absent(why) => candidate.absent = Some(why),
-            }
-            candidates.push(candidate);
-        }
+        let known = STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id));
+        let candidates = known.map(|effect| Candidate::new(effect, (effect.model)(&twin), &mut place)).collect();
         let families = families(&twin)
             .into_iter()
             .map(|mut family| {
