@@ -90,12 +90,12 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             continue;
         }
         let shapes = shapes_instead(bench, selection, &[k]);
-        let close = shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
+        // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
+        let weak = finding.is_walk || shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
         if let Some(shape) = shapes.rival(selection.evidence, TIE) {
             judged.nameless(shape.p_value(), exhibits::correlates(bench, shape));
             judged.demoted.push(finding);
-        // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
-        } else if leftover.is_real() && (finding.is_walk || close) {
+        } else if leftover.is_real() && weak {
             judged.demoted.push(finding);
         } else {
             finding.found.tied_with_shapes = exhibits::circumstances(bench, &shapes.at, selection.evidence);
