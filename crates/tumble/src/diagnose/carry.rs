@@ -69,7 +69,7 @@ pub fn carry(
         let (values, _) = numbers::shift_values(&mut bench, &rows, &ledger, settled, k);
         carried.push(Carried {
             id: id.clone(),
-            equation: bench.candidates[bench.accepted[k].candidate].effect.card.equation.into(),
+            equation: bench.candidate(&bench.accepted[k]).effect.card.equation.into(),
             parameters: values,
             about_degc: temperature.is_finite().then_some(temperature),
         });

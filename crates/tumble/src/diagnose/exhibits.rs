@@ -133,22 +133,26 @@ pub fn circumstances(bench: &Bench, instead: &[Leftover], evidence: f64) -> Vec<
         }
     }
     tied.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut said: Vec<String> = Vec::new();
-    for (_, shape) in tied {
-        if !said.contains(&shape) {
-            said.push(shape);
-        }
-    }
+    let mut said = once(tied.into_iter().map(|(_, shape)| shape));
     said.truncate(3);
     said
+}
+
+/// Each once, where it stands first.
+pub fn once<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
+    let mut once = Vec::new();
+    for one in all {
+        if !once.contains(&one) {
+            once.push(one);
+        }
+    }
+    once
 }
 
 /// A block in words.
 fn shape(bench: &Bench, block: &Block) -> String {
     let family = &bench.families[block.family].0;
-    let mut shapes: Vec<&str> = block.members.iter().map(|member| family.members[*member].1.as_str()).collect();
-    let mut seen = std::collections::BTreeSet::new();
-    shapes.retain(|shape| seen.insert(*shape));
+    let mut shapes = once(block.members.iter().map(|member| family.members[*member].1.as_str()));
     shapes.truncate(3);
     let triad = if family.gyro { "gyroscope" } else { "accelerometer" };
     format!("{}: {} ({})", family.name, shapes.join(", "), triad)

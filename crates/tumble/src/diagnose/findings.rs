@@ -38,11 +38,11 @@ pub fn findings(bench: &mut Bench, selection: &Selection, origin_s: f64) -> Vec<
 
 fn finding(bench: &mut Bench, selection: &Selection, noise: Noise, k: usize, origin_s: f64) -> Finding {
     let accepted = bench.accepted[k].clone();
-    let card = bench.candidates[accepted.candidate].effect.card;
+    let card = bench.candidate(&accepted).effect.card;
     let evidence = selection.evidence - select::without(bench, k);
     let rivals = rivals(bench, selection, k);
     let ledger = Ledger::new(&selection.after, |_| true);
-    let walk = bench.candidates[accepted.candidate].walk;
+    let walk = bench.candidate(&accepted).walk;
     let (parameters, signal) = stated(bench, selection, &ledger, noise, k);
     let place = if walk.is_some() {
         let first = if walk.is_some_and(|walk| walk.0) { 0 } else { 3 };
@@ -81,7 +81,7 @@ fn finding(bench: &mut Bench, selection: &Selection, noise: Noise, k: usize, ori
 
 /// An accepted effect's numbers, and its share in every row.
 fn stated(bench: &mut Bench, selection: &Selection, ledger: &Ledger, noise: Noise, k: usize) -> (Vec<Value>, Vec<f64>) {
-    match bench.candidates[bench.accepted[k].candidate].walk {
+    match bench.candidate(&bench.accepted[k]).walk {
         Some((gyro, unit_si, unit)) => {
             let found = walk_density(bench, noise, gyro);
             (vec![walk_value(&found, unit_si, unit)], vec![0.0; selection.after.at.len()])
@@ -94,7 +94,7 @@ fn stated(bench: &mut Bench, selection: &Selection, ledger: &Ledger, noise: Nois
 pub fn numbers(bench: &mut Bench, selection: &Selection) -> Vec<(&'static str, Vec<Value>)> {
     let noise = posterior::noise(bench);
     let ledger = Ledger::new(&selection.after, |_| true);
-    let id = |bench: &Bench, k: usize| bench.candidates[bench.accepted[k].candidate].effect.card.id;
+    let id = |bench: &Bench, k: usize| bench.candidate(&bench.accepted[k]).effect.card.id;
     (0..bench.accepted.len()).map(|k| (id(bench, k), stated(bench, selection, &ledger, noise, k).0)).collect()
 }
 
@@ -107,7 +107,7 @@ fn rivals(bench: &mut Bench, selection: &Selection, k: usize) -> Vec<(&'static s
         // With this one back in the samples and taken off the list.
         let removed = bench.accepted.remove(k);
         let noise = bench.twin.noise;
-        if bench.candidates[removed.candidate].walk.is_some() {
+        if bench.candidate(&removed).walk.is_some() {
             bench.twin.noise = selection.null_noise;
         }
         let samples = bench.twin.samples.clone();
@@ -134,7 +134,7 @@ fn rivals(bench: &mut Bench, selection: &Selection, k: usize) -> Vec<(&'static s
 /// Effects that can imitate what was found on this geometry.
 fn aliases(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<String> {
     let accepted = &bench.accepted[k];
-    let Some(placed) = bench.candidates[accepted.candidate].variants.get(accepted.variant) else { return Vec::new() };
+    let Some(placed) = bench.placed(accepted) else { return Vec::new() };
     let columns: Vec<usize> = placed.columns.clone().collect();
     let fit = ledger.fit(&bench.accepted_terms(&[]));
     let total = total(bench, &fit, k);

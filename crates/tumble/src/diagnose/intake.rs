@@ -5,8 +5,9 @@ use tumble_core::tape::Kind;
 
 use super::gates::{self, Gated, Scene};
 use super::prepare::{Prepared, prepare_settled};
+use super::run::Options;
+use super::search::bench::Bench;
 use super::twin::data::Raw;
-
 use crate::recording::{Inference, Reading, Recording};
 use crate::settle::{self, Session};
 
@@ -28,6 +29,15 @@ pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
 /// The same, but rotation while the box is moved from face to face is taken for lost.
 pub fn intake_without_moves(recording: &Recording, conditions: Option<Conditions>) -> Intake {
     take(recording, conditions, true)
+}
+
+/// A recording's twin, with the columns of all that may be searched for.
+///
+/// # Errors
+/// Why there is none, in words.
+pub fn bench(recording: &Recording, options: &Options) -> Result<Bench, String> {
+    let prepared = intake(recording, options.conditions).prepared?;
+    Ok(Bench::new(prepared.twin, &options.without))
 }
 
 fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bool) -> Intake {

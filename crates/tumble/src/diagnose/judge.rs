@@ -38,6 +38,23 @@ pub struct Judged {
 }
 
 impl Judged {
+    fn new(leftover: &Leftover) -> Self {
+        Self {
+            named: Vec::new(),
+            demoted: Vec::new(),
+            unknown: leftover.is_real(),
+            dropped: Vec::new(),
+            traces: false,
+            better: Vec::new(),
+            p_value: leftover.p_value(),
+        }
+    }
+
+    /// These lose their names.
+    fn demote(&mut self, falls: impl Fn(&Finding) -> bool) {
+        self.demoted.extend(self.named.extract_if(.., |finding| falls(finding)));
+    }
+
     /// Shapes without a name explain what a name would, and chance would explain it with this probability at most.
     fn nameless(&mut self, p_value: f64, shapes: Vec<(String, f64)>) {
         self.unknown = true;
@@ -52,25 +69,15 @@ impl Judged {
             self.traces = true;
         }
         self.unknown = false;
-        let (named, dropped): (Vec<_>, Vec<_>) = std::mem::take(&mut self.named)
-            .into_iter()
-            .partition(|finding| finding.found.evidence > BESIDE_GATES && !finding.is_walk);
-        self.named = named;
-        self.traces |= !dropped.is_empty();
+        let before = self.named.len();
+        self.named.retain(|finding| finding.found.evidence > BESIDE_GATES && !finding.is_walk);
+        self.traces |= self.named.len() < before;
     }
 }
 
 /// A name falls where shapes without one explain nearly as much, or where something is left that it does not stand clear of.
 pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
-    let mut judged = Judged {
-        named: Vec::new(),
-        demoted: Vec::new(),
-        unknown: leftover.is_real(),
-        dropped: Vec::new(),
-        traces: false,
-        better: Vec::new(),
-        p_value: leftover.p_value(),
-    };
+    let mut judged = Judged::new(leftover);
     let refuted = refute_walks(bench, &found, &mut judged);
     for mut finding in found {
         let id = finding.found.id.as_str();
@@ -78,21 +85,18 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.demoted.push(finding);
             continue;
         }
-        let Some(k) = bench.accepted.iter().position(|a| bench.candidates[a.candidate].effect.card.id == id) else {
-            continue;
-        };
+        let Some(k) = bench.accepted.iter().position(|a| bench.candidate(a).effect.card.id == id) else { continue };
         if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
             judged.dropped.push(finding.found.id.clone());
             continue;
         }
         let shapes = shapes_instead(bench, selection, &[k]);
-        let clear = shapes.clear(selection.evidence);
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
-        let catch_all = bench.candidates[bench.accepted[k].candidate].walk.is_some();
-        if clear < TIE && shapes.best().is_real() {
-            judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
+        let weak = finding.is_walk || shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
+        if let Some(shape) = shapes.rival(selection.evidence, TIE) {
+            judged.nameless(shape.p_value(), exhibits::correlates(bench, shape));
             judged.demoted.push(finding);
-        } else if leftover.is_real() && (catch_all || clear < BEYOND_UNKNOWN * finding.found.evidence) {
+        } else if leftover.is_real() && weak {
             judged.demoted.push(finding);
         } else {
             finding.found.tied_with_shapes = exhibits::circumstances(bench, &shapes.at, selection.evidence);
@@ -103,10 +107,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     one_for_all(bench, selection, &mut judged);
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
     if judged.unknown {
-        let named = std::mem::take(&mut judged.named);
-        let (walks, named): (Vec<_>, Vec<_>) = named.into_iter().partition(|finding| finding.is_walk);
-        judged.demoted.extend(walks);
-        judged.named = named;
+        judged.demote(|finding| finding.is_walk);
     }
     judged
 }
@@ -115,7 +116,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
 /// are: the shapes once more in the place of them all.
 fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     let named = |accepted: &Accepted| {
-        let candidate = &bench.candidates[accepted.candidate];
+        let candidate = bench.candidate(accepted);
         candidate.walk.is_none() && judged.named.iter().any(|finding| finding.found.id == candidate.effect.card.id)
     };
     let shifts: Vec<usize> = (0..bench.accepted.len()).filter(|k| named(&bench.accepted[*k])).collect();
@@ -123,13 +124,10 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
         return;
     }
     let shapes = shapes_instead(bench, selection, &shifts);
-    let clear = shapes.clear(selection.evidence);
     let coincidence = (shifts.len() - 1) as f64 * (bench.candidates.len() as f64).ln();
-    if clear < TIE + coincidence && shapes.best().is_real() {
-        judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
-        let (fallen, named) = std::mem::take(&mut judged.named).into_iter().partition(|finding| !finding.is_walk);
-        judged.named = named;
-        judged.demoted.extend::<Vec<Finding>>(fallen);
+    if let Some(shape) = shapes.rival(selection.evidence, TIE + coincidence) {
+        judged.nameless(shape.p_value(), exhibits::correlates(bench, shape));
+        judged.demote(|finding| !finding.is_walk);
     }
 }
 
@@ -151,13 +149,18 @@ impl Instead {
     fn clear(&self, evidence: f64) -> f64 {
         evidence - self.best().reached()
     }
+
+    /// Where shapes are more than chance, and the names are not clear of them by a margin.
+    fn rival(&self, evidence: f64, margin: f64) -> Option<&Leftover> {
+        Some(self.best()).filter(|best| best.is_real() && self.clear(evidence) < margin)
+    }
 }
 
 /// A walk is a part of the noise in force: in its place that is the null's. What changes with time has raised the null's as far as a
 /// healthy bias wanders, and with a shape for it the least is enough.
 fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Instead {
     let in_force = bench.twin.noise;
-    let walks = of.iter().any(|&k| bench.candidates[bench.accepted[k].candidate].walk.is_some());
+    let walks = of.iter().any(|&k| bench.candidate(&bench.accepted[k]).walk.is_some());
     let least = with_walks(&selection.null_noise, HEALTHY[0], HEALTHY[0]);
     let mut noises = vec![selection.null_noise];
     if !walks && in_force != selection.null_noise {
@@ -194,10 +197,9 @@ impl Refuted {
 fn refute_walks(bench: &mut Bench, found: &[Finding], judged: &mut Judged) -> Vec<Refuted> {
     let mut refuted = Vec::new();
     for finding in found {
-        let walk = |candidate: &&super::search::bench::Candidate| candidate.effect.card.id == finding.found.id;
-        let Some((gyro, ..)) = bench.candidates.iter().find(walk).and_then(|candidate| candidate.walk) else {
-            continue;
-        };
+        let mut candidates = bench.candidates.iter();
+        let walk = candidates.find(|candidate| candidate.effect.card.id == finding.found.id);
+        let Some((gyro, ..)) = walk.and_then(|candidate| candidate.walk) else { continue };
         let Some((why, gain)) = wandering::refute(bench, gyro) else { continue };
         let (triad, name) = if gyro { ("gyro_", "gyroscope") } else { ("accel_", "accelerometer") };
         judged.nameless((-gain).exp(), vec![(format!("{why} ({name})"), gain)]);

@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::diagnosis::Limit;
 use super::gates::chance::shift_seen;
-use super::search::bench::{Bench, HEALTHY, with_walks};
+use super::search::bench::{Bench, Candidate, HEALTHY, with_walks};
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
-use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR};
+use super::twin::noise::walk_floor;
 
 /// What the recording could have shown, with 95 % certainty, by the threshold in force.
 ///
@@ -52,12 +52,27 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
     }
     if let Some((gyro, unit_si, unit)) = candidate.walk {
         // What is more than healthy by the first level that counts.
-        let floor = if gyro { BIAS_WALK_FLOOR } else { FORCE_WALK_FLOOR };
-        let limit = (floor * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
+        let limit = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
     }
-    // One of its parameters alone, the others zero, at the price of them all; the median over parameters and variants.
-    let mut limits: Vec<(f64, f64, &str)> = Vec::new();
+    // The median over parameters and variants.
+    let mut limits = limits_alone(candidate, selection, ledger);
+    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(&(limit, width, unit)) = limits.get(limits.len() / 2) else {
+        return none("nothing in this recording depends on it", "");
+    };
+    let testable = limit < 10.0 * width;
+    let why = if testable {
+        String::new()
+    } else {
+        format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}")
+    };
+    Limit { id, limit, unit: unit.into(), testable, why }
+}
+
+/// Of each parameter of each variant alone, the others zero, at the price of them all: limit, prior width and unit.
+fn limits_alone(candidate: &Candidate, selection: &Selection, ledger: &Ledger) -> Vec<(f64, f64, &'static str)> {
+    let mut limits = Vec::new();
     for placed in &candidate.variants {
         let columns: Vec<usize> = placed.columns.clone().collect();
         let information = ledger.gram(&selection.null_scales, &columns, &columns);
@@ -73,17 +88,7 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
             limits.push((sigmas / information[(i, i)].sqrt(), parameter.width, parameter.unit));
         }
     }
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(limit, width, unit)) = limits.get(limits.len() / 2) else {
-        return none("nothing in this recording depends on it", "");
-    };
-    let testable = limit < 10.0 * width;
-    let why = if testable {
-        String::new()
-    } else {
-        format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}")
-    };
-    Limit { id, limit, unit: unit.into(), testable, why }
+    limits
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! When recording and simulation differ: find where, say which physics was left out, model it, and prove it.
 
+mod answer;
 pub mod carry;
 pub mod catalogue;
 pub mod diagnosis;

@@ -28,7 +28,7 @@ pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Nois
     let total = total(bench, &fit, k);
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let accepted = &bench.accepted[k];
-    let placed = &bench.candidates[accepted.candidate].variants[accepted.variant];
+    let placed = &bench.candidate(accepted).variants[accepted.variant];
     let count = placed.parameters.len();
     let covariance = fit.covariance.view((before, before), (count, count)).into_owned();
     let (own, covariance) = match (&placed.own, &settled) {
@@ -57,7 +57,7 @@ pub fn shift_values(bench: &mut Bench, rows: &Rows, ledger: &Ledger, noise: Nois
 /// The fit whose numbers are stated, freed of the prior. A lever arm and the Earth's rate are states of the calibration as well:
 /// what is stated is the whole of them, and its sigma that of the whole, not of how the two share it (1.2 cm, 8.7 deg/h).
 fn own_fit(bench: &mut Bench, k: usize) -> Fit {
-    let id = bench.candidates[bench.accepted[k].candidate].effect.card.id;
+    let id = bench.candidate(&bench.accepted[k]).effect.card.id;
     let terms = freed(bench.accepted_terms(&[]));
     bench.twin.leave_to_effect(id, true);
     let (ledger, terms) = bench.ledger_of(&terms);
@@ -77,20 +77,13 @@ pub struct WalkDensity {
 /// where that is certain: noise that is maximised, and may only be larger than believed, took a seventh off a walk's size.
 pub fn walk_density(bench: &mut Bench, noise: Noise, gyro: bool) -> WalkDensity {
     let free = freed(bench.accepted_terms(&[]));
-    let with = |noise: Noise, factor: f64| {
-        if gyro {
-            Noise { bias_walk: noise.bias_walk * factor, ..noise }
-        } else {
-            Noise { force_walk: noise.force_walk * factor, ..noise }
-        }
-    };
     let in_force = bench.twin.noise;
     bench.twin.noise = noise;
     let (ledger, terms) = bench.ledger_of(&free);
     let ledger = ledger.believing(Class::Closure);
     let scales = ledger.certain(&ledger.fit(&terms));
     let mut evidence = |log: f64| {
-        bench.twin.noise = with(noise, log.exp());
+        bench.twin.noise = noise.with_walk(gyro, noise.walk(gyro) * log.exp());
         bench.ledger_of(&free).0.at(&scales).fit(&terms).evidence
     };
     // Newton's method on a parabola through three points.
@@ -105,8 +98,7 @@ pub fn walk_density(bench: &mut Bench, noise: Noise, gyro: bool) -> WalkDensity 
         sigma_log = curvature.sqrt().recip();
     }
     bench.twin.noise = in_force;
-    let density = at.exp() * if gyro { noise.bias_walk } else { noise.force_walk };
-    WalkDensity { density, sigma_log }
+    WalkDensity { density: at.exp() * noise.walk(gyro), sigma_log }
 }
 
 /// The walk's size, `√q`, in its unit.

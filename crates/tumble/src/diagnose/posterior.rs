@@ -4,8 +4,8 @@
 //! estimator took them for (`Noise::trusting`; the one is a guess, in the other an effect passes for sloppy stops), biases that
 //! wander by one of three healthy levels. That is good enough to compare models, which all have it. A sigma that rests on 12
 //! closures is wrong by as much: the truth of a fence of ±0.1° is 0.058°, and taken for 0.05° an asymmetry of the scale was off
-//! by 1.11 sigmas (root mean square) where nothing but stops disturbed it, by 0.65 where they were exact. So each variance has a posterior of its own beside the
-//! accepted effects, over a grid uniform in its logarithm. All covariances are linear in it, so that its mean stands for it,
+//! by 1.11 sigmas (root mean square) where nothing but stops disturbed it, by 0.65 where they were exact. So each variance has a posterior of its own
+//! beside the accepted effects, over a grid uniform in its logarithm. All covariances are linear in it, so that its mean stands for it,
 //! as in the device's `closures.rs`.
 
 use tumble_core::setup::TurnStops;
@@ -13,7 +13,7 @@ use tumble_core::setup::TurnStops;
 use super::search::bench::{Bench, HEALTHY};
 use super::search::ledger::posterior;
 use super::search::shares::freed;
-use super::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise, PIVOT_SIGMA_M};
+use super::twin::noise::{Noise, PIVOT_SIGMA_M, walk_floor};
 use super::twin::rows::Class;
 
 /// Steps of √2 from the least sigma of a stop, deg: to 0.4° against a fence, to 9° by hand.
@@ -34,21 +34,18 @@ pub fn noise(bench: &mut Bench) -> Noise {
     noise.stop_sigma_rad =
         mean(bench, (0..STOP_STEPS).map(stop), |variance| Noise { stop_sigma_rad: variance.sqrt(), ..noise })
             .map_or(noise.stop_sigma_rad, f64::sqrt);
-    let [wanders, force_wanders] = [true, false].map(|gyro| is_walk(bench, gyro));
     let levels = |floor: f64| {
         let whole = (HEALTHY[2] / HEALTHY[0]).ln() / f64::from(WALK_STEPS - 1);
         (0..WALK_STEPS).map(move |step| floor * (whole * f64::from(step)).exp())
     };
-    if !wanders {
-        let found = mean(bench, levels(BIAS_WALK_FLOOR), |bias_walk| Noise { bias_walk, ..noise });
-        noise.bias_walk = found.unwrap_or(noise.bias_walk);
-    }
-    if !force_wanders {
-        let found = mean(bench, levels(FORCE_WALK_FLOOR), |force_walk| Noise { force_walk, ..noise });
-        noise.force_walk = found.unwrap_or(noise.force_walk);
+    for gyro in [true, false] {
+        if !bench.wanders(gyro) {
+            let found = mean(bench, levels(walk_floor(gyro)), |walk| noise.with_walk(gyro, walk));
+            noise = noise.with_walk(gyro, found.unwrap_or(noise.walk(gyro)));
+        }
     }
     let levers = ["accel_lever_arm", "accel_internal_lever_arms"];
-    if bench.accepted.iter().any(|one| levers.contains(&bench.candidates[one.candidate].effect.card.id)) {
+    if bench.accepted.iter().any(|accepted| levers.contains(&bench.candidate(accepted).effect.card.id)) {
         let pivot = |step: i32| (PIVOT_SIGMA_M * 2f64.powi(1 - step)).powi(2);
         let found =
             mean(bench, (0..PIVOT_STEPS).map(pivot), |variance| Noise { pivot_sigma_m: variance.sqrt(), ..noise });
@@ -56,10 +53,6 @@ pub fn noise(bench: &mut Bench) -> Noise {
     }
     bench.twin.noise = in_force;
     noise
-}
-
-fn is_walk(bench: &Bench, gyro: bool) -> bool {
-    bench.accepted.iter().any(|one| bench.candidates[one.candidate].walk.is_some_and(|walk| walk.0 == gyro))
 }
 
 /// Mean of a variance by the evidence of the noise that it makes; none where the rows break down.

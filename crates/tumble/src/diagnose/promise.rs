@@ -5,21 +5,15 @@ use super::Options;
 use super::catalogue::STRUCTURAL;
 use super::diagnosis::Value;
 use super::findings;
-use super::intake::intake;
-use super::search::bench::Bench;
+use super::intake::bench;
 use super::search::ledger::Ledger;
 use super::search::null::{self, FALSE_ALARMS};
 use super::search::{select, unknown};
 use crate::recording::Recording;
 
-fn bench(recording: &Recording, options: &Options) -> Option<Bench> {
-    let prepared = intake(recording, options.conditions).prepared.ok()?;
-    Some(Bench::new(prepared.twin, &options.without))
-}
-
 /// ln of the odds that a name needs on this recording.
 pub fn threshold(recording: &Recording, options: &Options) -> Option<f64> {
-    let mut bench = bench(recording, options)?;
+    let mut bench = bench(recording, options).ok()?;
     let (noise, _) = select::settle_walks(&mut bench);
     let rows = bench.rows(noise);
     let scales = Ledger::new(&rows, |_| true).fit(&[]).scales;
@@ -34,13 +28,13 @@ fn knowing(options: &Options, known: impl Fn(&str) -> bool) -> Options {
 
 /// ln of the odds for this effect against the null, whatever noise excuses it best; none if the search does not know it.
 pub fn of_effect(recording: &Recording, options: &Options, id: &str) -> Option<f64> {
-    let mut bench = bench(recording, &knowing(options, |known| known == id))?;
+    let mut bench = bench(recording, &knowing(options, |known| known == id)).ok()?;
     select::score(&mut bench).first().map(|score| score.gain)
 }
 
 /// ln of the mean odds of all shapes without a name, and what it needs.
 pub fn of_shapes(recording: &Recording, options: &Options) -> Option<(f64, f64)> {
-    let mut bench = bench(recording, &knowing(options, |_| false))?;
+    let mut bench = bench(recording, &knowing(options, |_| false)).ok()?;
     bench.twin.noise = select::settle_walks(&mut bench).0;
     Some((unknown::weigh(&mut bench, &[]).evidence, -FALSE_ALARMS.ln()))
 }
@@ -48,7 +42,7 @@ pub fn of_shapes(recording: &Recording, options: &Options) -> Option<(f64, f64)>
 /// The numbers of effects that are known to be there, as a diagnosis would state them: the search as ever, but with nothing else
 /// to choose from and no name challenged. What it does not find is left out.
 pub fn numbers(recording: &Recording, options: &Options, ids: &[&str]) -> Option<Vec<(&'static str, Vec<Value>)>> {
-    let mut bench = bench(recording, &knowing(options, |known| ids.contains(&known)))?;
+    let mut bench = bench(recording, &knowing(options, |known| ids.contains(&known))).ok()?;
     let selection = select::select(&mut bench, options.seed, &mut |_, _| {});
     Some(findings::numbers(&mut bench, &selection))
 }

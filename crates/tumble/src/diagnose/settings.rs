@@ -45,7 +45,7 @@ fn coarse(bench: &Bench, ledger: &Ledger, k: usize) -> Vec<(f64, f64)> {
     let accepted = &bench.accepted[k];
     let mut others = bench.accepted_terms(&[k]);
     others.extend(bench.put_back(accepted));
-    let variants = &bench.candidates[accepted.candidate].variants;
+    let variants = &bench.candidate(accepted).variants;
     let weigh = |variant: usize| {
         let mut terms = others.clone();
         // The variant in force: put-back and itself share columns; free ones replace the fixed.
@@ -67,7 +67,7 @@ pub fn sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
     let mean: f64 = each().map(|(setting, share)| setting * share).sum();
     let spread: f64 = each().map(|(setting, share)| (setting - mean).powi(2) * share).sum();
     let accepted = &bench.accepted[k];
-    let at = bench.candidates[accepted.candidate].variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
+    let at = bench.candidate(accepted).variants[accepted.variant].setting.map_or(0.0, |setting| setting.1);
     let around = coarse.windows(2).filter(|pair| pair[0].0 <= at && at <= pair[1].0);
     let grid = around.map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
     (spread + grid * grid / 12.0).sqrt()
@@ -75,7 +75,7 @@ pub fn sigma(bench: &Bench, ledger: &Ledger, k: usize) -> f64 {
 
 /// None for an effect without such a setting.
 pub fn settle(bench: &mut Bench, ledger: &Ledger, k: usize) -> Option<Settled> {
-    let at = at_any_setting(bench.candidates[bench.accepted[k].candidate].effect.card.id)?;
+    let at = at_any_setting(bench.candidate(&bench.accepted[k]).effect.card.id)?;
     let (mut low, mut high) = possible(&coarse(bench, ledger, k))?;
     let mut tried = Vec::new();
     for _ in 0..ZOOMS {

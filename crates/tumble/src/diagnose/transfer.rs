@@ -3,7 +3,7 @@
 //! On the other recording the nominal sensor is fitted anew (its biases and scales may have moved), the effect is not.
 
 use super::diagnosis::{Diagnosis, Found, OtherRecording};
-use super::intake::intake;
+use super::intake::bench;
 use super::run::Options;
 use super::search::bench::{Bench, Placed};
 use crate::recording::Recording;
@@ -61,12 +61,6 @@ pub fn try_on(diagnosis: &mut Diagnosis, recording: &Recording, file: &str, opti
 /// Does it stay with the sensor?
 pub fn carries(found: &Found) -> bool {
     CARRY_OVER.contains(&found.id.as_str())
-}
-
-/// The other recording's twin, taken in as the first was, and all candidates' columns.
-fn bench(recording: &Recording, options: &Options) -> Result<Bench, String> {
-    let prepared = intake(recording, options.conditions).prepared?;
-    Ok(Bench::new(prepared.twin, &options.without))
 }
 
 /// The effect's columns on this bench at the sizes that were found; none if it does not carry over or cannot show.

@@ -1,6 +1,6 @@
 //! The accelerometer's bias jumps once: `f_raw,i += c_i [t > t₀]`.
 
-use super::{Card, Effect, G, Model, Variant, accel_axes, jumps};
+use super::{Card, Effect, G, Model, Variant, accel_axes, jump};
 use crate::diagnose::twin::Twin;
 
 const CARD: Card = Card {
@@ -17,8 +17,7 @@ const CARD: Card = Card {
 pub const EFFECT: Effect = Effect { card: &CARD, model };
 
 fn model(twin: &Twin) -> Model {
-    let variant = |from_s: f64| Variant { setting: Some(("at", from_s, "s")), ..from(from_s) };
-    Model::Shift(jumps(twin).into_iter().map(variant).collect())
+    jump(twin, from)
 }
 
 /// Of an instant.

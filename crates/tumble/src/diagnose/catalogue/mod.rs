@@ -226,8 +226,14 @@ pub fn with_temperature(twin: &Twin, variant: impl FnOnce() -> Variant) -> Model
     Model::Shift(vec![variant()])
 }
 
-/// Instants at which something may have jumped: ends and middles of all stretches.
-pub fn jumps(twin: &Twin) -> Vec<f64> {
+/// A model of what jumped once: a variant an instant.
+pub fn jump(twin: &Twin, from: fn(f64) -> Variant) -> Model {
+    let variant = |from_s: f64| Variant { setting: Some(("at", from_s, "s")), ..from(from_s) };
+    Model::Shift(instants(twin).into_iter().map(variant).collect())
+}
+
+/// At which something may have jumped: ends and middles of all stretches.
+fn instants(twin: &Twin) -> Vec<f64> {
     let mut times: Vec<f64> = Vec::new();
     let end_s = twin.samples.last().map_or(0.0, |raw| raw.t_s);
     for stretch in &twin.stretches {

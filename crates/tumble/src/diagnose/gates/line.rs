@@ -9,9 +9,10 @@
 //! p is the geometric mean of the medians of the bins 3 to 12 resolutions off to either side: exact on any flank that falls
 //! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
-//! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates'
-//! scatter from 4 to 15 Hz, over 0.3 °/s, or by noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05).
-//! Where rounding hides the noise (σ < 0.35 steps) it makes lines of its own: such a triad is passed over.
+//! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary
+//! noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates' scatter from 4 to 15 Hz, over 0.3 °/s, or by
+//! noise of 1.5 times what it is above 16 Hz, from 4 to 6 or from 6 to 15 Hz (white: 1 ± 0.05). Where rounding hides the noise (σ < 0.35 steps) it
+//! makes lines of its own: such a triad is passed over.
 //!
 //! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
 //! = threshold − 2R (non-central χ²), and A² = 2·p·λ/Σ(Σw)²/Σw², at the noise p of the loudest twentieth of the band.
@@ -89,20 +90,22 @@ impl Test {
     }
 }
 
-/// The gate; `rocking_hz` is a table's, which is no hum.
-pub fn examine(view: &View, spectra: Option<&Spectra>, rocking_hz: Option<f64>) -> Outcome {
+/// The gate; `hand` is what the spectra show of one, and `rocking_hz` a table's, which is no hum.
+pub fn examine(view: &View, spectra: Option<&Spectra>, hand: Hand, rocking_hz: Option<f64>) -> Outcome {
     let none = |why: &str| Outcome { limit: untestable(&CARD, "mg", why), ..Outcome::default() };
     let Some(spectra) = spectra else { return none("no rest on something solid that is long enough") };
     let test = Test::new(spectra);
-    let but = if Hand::of(spectra).holds() { " but below 15 Hz, where a hand trembles" } else { "" };
+    let but = if hand.holds() { " but below 15 Hz, where a hand trembles" } else { "" };
     let why = format!("from {:.1} Hz to half the rate{but}, the force of a hum of the box itself", least_hz(spectra));
     let mut outcome = Outcome { limit: limit(&CARD, 1e3 * least_g(spectra, &test), "mg", &why), ..Outcome::default() };
     let rounded = |triad: usize| {
         let axes = 3 * triad..3 * triad + 3;
         median(axes.map(|c| view.sigma[c] / view.step[c].max(1e-12)).collect()) < 0.45
     };
-    let lines: Vec<Line> =
-        (0..2).filter(|triad| !rounded(*triad)).filter_map(|triad| line(spectra, &test, triad, rocking_hz)).collect();
+    let lines: Vec<Line> = (0..2)
+        .filter(|triad| !rounded(*triad))
+        .filter_map(|triad| line(spectra, &test, triad, hand, rocking_hz))
+        .collect();
     let Some(strongest) = lines.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p)) else { return outcome };
     let mut parameters = Vec::new();
     let (mut mask, mut sharpest) = (0, 0.0_f64);
@@ -127,10 +130,9 @@ fn least_hz(spectra: &Spectra) -> f64 {
     LEAST_HZ.max(5.0 * spectra.resolution_hz)
 }
 
-fn line(spectra: &Spectra, test: &Test, triad: usize, rocking_hz: Option<f64>) -> Option<Line> {
-    let held = Hand::of(spectra).holds();
+fn line(spectra: &Spectra, test: &Test, triad: usize, hand: Hand, rocking_hz: Option<f64>) -> Option<Line> {
     let hidden = |hz: f64| {
-        (held && hz < TREMOR_HZ)
+        (hand.holds() && hz < TREMOR_HZ)
             || rocking_hz.is_some_and(|rocking| (hz - rocking).abs() < SKIRTS * spectra.resolution_hz)
     };
     let first = spectra.bin(least_hz(spectra));

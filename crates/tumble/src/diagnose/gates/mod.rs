@@ -4,7 +4,7 @@
 //! clean recordings, whatever the sensor's rate, rounding and noise, and however a person's hands shake.
 
 mod aliasing;
-pub mod chance;
+pub(super) mod chance;
 mod closure;
 mod coarse;
 mod gaps;
@@ -98,62 +98,12 @@ pub fn examine(scene: &Scene) -> Gated {
         return gated;
     }
     let view = View::new(scene);
-    let (jitter, steps) = stamps::examine(&view);
-    gated.take(gaps::examine(&view, steps.found.is_some()));
-    gated.take(jitter);
-    gated.take(steps);
-    let stale = stale::examine(&view);
-    let torn = tearing::examine(&view);
-    let shock = shock::examine(&view, &torn.repaired);
-    // Bytes torn in neighbouring samples look like knocks.
-    if torn.found.is_none() {
-        gated.take(shock);
-    }
-    let tears = torn.found.is_some();
-    gated.take(torn);
-    let (gyro, accel) = saturation::examine(&view, &stale.repaired);
-    gated.take(stale);
-    let mapped = mapping::examine(&view, gyro.found.is_some(), accel.found.is_some());
-    // Counts of a range too wide look coarse; the range says so already.
-    let coarse = if mapped.scale.found.is_none() { coarse::examine(&view) } else { Outcome::default() };
-    // Coarse peaks look flat one by one: then only many of them count.
-    let flat_by_steps = gyro.found.as_ref().is_some_and(|found| found.evidence < MANY_FLATS);
-    if coarse.found.is_none() || !flat_by_steps {
-        gated.take(gyro);
-    }
-    gated.take(accel);
-    let hole = hole::examine(&view);
-    // Rates that a driver sets to zero have no scatter, as coarse ones have none.
-    gated.take(if hole.found.is_some() { Outcome { found: None, ..coarse } } else { coarse });
-    gated.take(hole);
-    gated.take(mapped.axes);
-    gated.take(mapped.scale);
-    gated.remap = mapped.remap;
-    let spectra = Spectra::new(&view);
-    let hand = spectra.as_ref().map(line::Hand::of).unwrap_or_default();
-    // What sways at one frequency alone is a table: that gate sees for itself.
-    let rocking = rocking::examine(&view, hand.trembles);
-    let rocking_hz = rocking.found.as_ref().and_then(|found| found.parameters.iter().find(|p| p.name == "frequency"));
-    let line = line::examine(&view, spectra.as_ref(), rocking_hz.map(|frequency| frequency.value));
-    gated.take(rocking);
-    // Torn readings are a few spikes of one channel: their spectrum is not the noise that lines are told from.
-    gated.take(if tears { Outcome { found: None, ..line } } else { line });
+    gated.look_at_stamps(&view);
+    let torn = gated.look_at_spikes(&view);
+    gated.look_at_values(&view);
+    gated.look_at_spectra(&view, torn);
     gated.take(aliasing::examine(&view));
-    // Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
-    let rotation = [
-        "gyro_saturation",
-        "gyro_coarse_quantization",
-        "axis_mapping",
-        "wrong_full_scale",
-        "undersampling",
-        // Products of rates and wrong intervals tilt the axis of a turn: steps of 10 ms by more than a degree.
-        "timestamp_jitter",
-        "timestamp_quantization",
-    ];
-    if !gated.found.iter().any(|found| rotation.contains(&found.id.as_str())) {
-        gated.take(wobble::examine(&view));
-        gated.take(closure::examine(&view));
-    }
+    gated.look_at_rotation(&view);
     gated.repaired.sort_unstable();
     gated.repaired.dedup();
     gated.imitated.sort();
@@ -183,6 +133,80 @@ fn unfit(scene: &Scene) -> Option<String> {
 }
 
 impl Gated {
+    fn look_at_stamps(&mut self, view: &View) {
+        let (jitter, steps) = stamps::examine(view);
+        self.take(gaps::examine(view, steps.found.is_some()));
+        self.take(jitter);
+        self.take(steps);
+    }
+
+    /// Whether readings are torn.
+    fn look_at_spikes(&mut self, view: &View) -> bool {
+        let tearing = tearing::examine(view);
+        let torn = tearing.found.is_some();
+        // Bytes torn in neighbouring samples look like knocks.
+        if !torn {
+            self.take(shock::examine(view));
+        }
+        self.take(tearing);
+        torn
+    }
+
+    /// Values that readings take or miss, and what they say of axes and ranges.
+    fn look_at_values(&mut self, view: &View) {
+        let stale = stale::examine(view);
+        let (gyro, accel) = saturation::examine(view, &stale.repaired);
+        self.take(stale);
+        let mapped = mapping::examine(view, gyro.found.is_some(), accel.found.is_some());
+        // Counts of a range too wide look coarse; the range says so already.
+        let coarse = if mapped.scale.found.is_none() { coarse::examine(view) } else { Outcome::default() };
+        // Coarse peaks look flat one by one: then only many of them count.
+        let flat_by_steps = gyro.found.as_ref().is_some_and(|found| found.evidence < MANY_FLATS);
+        if coarse.found.is_none() || !flat_by_steps {
+            self.take(gyro);
+        }
+        self.take(accel);
+        let hole = hole::examine(view);
+        // Rates that a driver sets to zero have no scatter, as coarse ones have none.
+        self.take(coarse.unless(hole.found.is_some()));
+        self.take(hole);
+        self.take(mapped.axes);
+        self.take(mapped.scale);
+        self.remap = mapped.remap;
+    }
+
+    /// What swings at rest.
+    fn look_at_spectra(&mut self, view: &View, torn: bool) {
+        let spectra = Spectra::new(view);
+        let hand = spectra.as_ref().map(line::Hand::of).unwrap_or_default();
+        // What sways at one frequency alone is a table: that gate sees for itself.
+        let rocking = rocking::examine(view, hand.trembles);
+        let parameters = rocking.found.iter().flat_map(|found| &found.parameters);
+        let rocking_hz = parameters.filter(|parameter| parameter.name == "frequency").map(|hz| hz.value).next();
+        let line = line::examine(view, spectra.as_ref(), hand, rocking_hz);
+        self.take(rocking);
+        // Torn readings are a few spikes of one channel: their spectrum is not the noise that lines are told from.
+        self.take(line.unless(torn));
+    }
+
+    /// Rotation that clipped, coarse or mistaken readings got wrong says nothing of the person.
+    fn look_at_rotation(&mut self, view: &View) {
+        let wrong = [
+            "gyro_saturation",
+            "gyro_coarse_quantization",
+            "axis_mapping",
+            "wrong_full_scale",
+            "undersampling",
+            // Products of rates and wrong intervals tilt the axis of a turn: steps of 10 ms by more than a degree.
+            "timestamp_jitter",
+            "timestamp_quantization",
+        ];
+        if !self.found.iter().any(|found| wrong.contains(&found.id.as_str())) {
+            self.take(wobble::examine(view));
+            self.take(closure::examine(view));
+        }
+    }
+
     fn take(&mut self, outcome: Outcome) {
         self.imitated.extend(outcome.found.iter().flat_map(|_| outcome.imitated).map(|id| (*id).into()));
         self.found.extend(outcome.found);

@@ -3,7 +3,8 @@
 //! Statistic: at frequencies from 0.3 to 4 Hz, a sine fitted to every rest of at least one period; the gyroscope's power across gravity
 //! (a table leans about level axes), mean over R rests, against white noise p, the median over all frequencies up to 8 Hz, and 1/f
 //! noise with a corner of 0.6 Hz: p·(1 + 0.6/f), ten times what healthy biases have (10 °/h). That is χ² of 4R over its mean,
-//! its tail Chernoff's over all frequencies, at e⁻¹¹·⁵. Then it must be a table's: at 0.6 Hz off (or what rests resolve) it has fallen to a third, and either
+//! its tail Chernoff's over all frequencies, at e⁻¹¹·⁵. Then it must be a table's: at 0.6 Hz off (or what rests resolve) it has fallen to a third,
+//! and either
 //!
 //! - the accelerometer confirms it: a lean θ = ω/(2πif) about a level axis h, h metres up, shows as (g + h(2πf)²)·θ across it. Direction,
 //!   phase and frequency are the gyroscope's, so one number c is left, fitted to all rests, 1 for a pivot at the sensor: it
@@ -71,6 +72,7 @@ struct Quiet {
     dt_s: f64,
     up: Vector3<f64>,
     means: Vec<[f64; 6]>,
+    taper: Taper,
 }
 
 /// The gate; hands that hold the box (`trembling`) sway it as a table does.
@@ -179,7 +181,8 @@ fn decimated(view: &View, rest: &Rest) -> Quiet {
             out[c] = block.iter().sum::<f64>() / every as f64 - mean;
         }
     }
-    Quiet { dt_s: every as f64 * view.dt_s, up: rest.force.normalize(), means }
+    let taper = Taper::new(count, TAPER);
+    Quiet { dt_s: every as f64 * view.dt_s, up: rest.force.normalize(), means, taper }
 }
 
 /// Over rests of at least one period, weighted by length.
@@ -187,12 +190,11 @@ fn swing(rests: &[Quiet], hz: f64) -> Option<Swing> {
     let mut all =
         Swing { hz, rests: 0.0, samples: 0.0, across: 0.0, along: 0.0, force: 0.0, product: 0.0, square: 0.0 };
     for rest in rests.iter().filter(|rest| rest.dt_s * rest.means.len() as f64 * hz >= 1.0) {
-        let taper = Taper::new(rest.means.len(), TAPER);
-        let count = taper.gain();
+        let count = rest.taper.gain();
         let mut sums = [[Vector3::zeros(); 2]; 2];
         for (k, values) in rest.means.iter().enumerate() {
             let (sin, cos) = (TAU * hz * rest.dt_s * k as f64).sin_cos();
-            let weight = 2.0 * taper.weights[k] / taper.sum;
+            let weight = 2.0 * rest.taper.weights[k] / rest.taper.sum;
             let (sin, cos) = (sin * weight, cos * weight);
             for (triad, sums) in sums.iter_mut().enumerate() {
                 let value = Vector3::new(values[3 * triad], values[3 * triad + 1], values[3 * triad + 2]);

@@ -1,9 +1,9 @@
 //! Readings that stand at a level which the motion passed (`gyro_saturation`, `accel_saturation`).
 //!
 //! Statistic: at a channel's extreme M, (1) exact repeats: more in a row than noise makes alike, and 15 to 40 ms of them
-//! (`least_run`). (2) Either *overshoot*: the parabolas through the 80 ms before the run and after it (backwards), drawn on by half the run or 20 ms, are both past M by more than 8 sigmas
-//! of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends in the peak of any
-//! motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
+//! (`least_run`). (2) Either *overshoot*: the parabolas through the 80 ms before the run and after it (backwards), drawn on by half the run or 20 ms,
+//! are both past M by more than 8 sigmas of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends
+//! in the peak of any motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
 //! all of the next three steps below it by a margin that fair coins reach with e⁻¹¹·⁵ (Hoeffding): a density that falls
 //! towards its extreme has fewer. Pile-up is only asked where noise is more than the half step by which
 //! rounding alone scatters, so that a constant reading is not just rounding.

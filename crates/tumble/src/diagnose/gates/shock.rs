@@ -42,9 +42,9 @@ pub(super) const CARD: Card = Card {
     separate_by: "leave the table alone while it records: what comes again comes from the sensor",
 };
 
-/// The gate; `torn` samples are passed over.
-pub fn examine(view: &View, torn: &[usize]) -> Outcome {
-    let rough = roughness(view, torn);
+/// The gate.
+pub fn examine(view: &View) -> Outcome {
+    let rough = roughness(view);
     let noise = (3..6).map(|c| view.sigma[c]).filter(|s| s.is_finite()).fold(0.0, f64::max);
     let least = LEAST_G.max(TIMES * noise);
     let why = "half a second or more from where motion begins or ends";
@@ -81,7 +81,7 @@ pub fn examine(view: &View, torn: &[usize]) -> Outcome {
 }
 
 /// Length of the force less its running median, g.
-fn roughness(view: &View, torn: &[usize]) -> Vec<f64> {
+fn roughness(view: &View) -> Vec<f64> {
     let half = view.count(MEDIAN_S).max(4);
     let count = view.len();
     let mut squares = vec![0.0; count];
@@ -95,7 +95,6 @@ fn roughness(view: &View, torn: &[usize]) -> Vec<f64> {
             *square += (channel[i] - median).powi(2);
         }
     }
-    torn.iter().for_each(|i| squares[*i] = 0.0);
     squares.into_iter().map(f64::sqrt).collect()
 }
 
@@ -130,16 +129,9 @@ fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)>
 
 /// A single sample of one channel is a reading gone wrong; a knock that is as short as a sample moves several.
 fn is_shared(view: &View, burst: &Range<usize>) -> bool {
-    let (Some(before), after) = (burst.start.checked_sub(1), burst.end) else { return false };
-    if burst.len() > 1 || after >= view.len() {
-        return burst.len() > 1;
-    }
-    let stands_out = |channel: &usize| {
-        let values = &view.channels[*channel];
-        let size = (values[burst.start] - 0.5 * (values[before] + values[after])).abs();
-        view.sigma[*channel].is_finite() && size > TIMES * view.sigma[*channel]
-    };
-    (0..6).filter(stands_out).count() > 1
+    let between = burst.start > 0 && burst.end < view.len();
+    let stands_out = |channel: &usize| view.bend(*channel, burst.start) > TIMES * view.sigma[*channel];
+    burst.len() > 1 || (between && (0..6).filter(stands_out).count() > 1)
 }
 
 /// What surrounds a place where motion does not change.

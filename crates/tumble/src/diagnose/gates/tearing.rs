@@ -36,37 +36,22 @@ struct Spike {
 
 /// The gate.
 pub fn examine(view: &View) -> Outcome {
-    let ranges = [(view.scene.inference.gyro_range_dps, 0..3), (view.scene.inference.accel_range_g, 3..6)];
+    let tested = tested(view);
+    if tested.is_empty() {
+        let why = "readings are not whole counts of a known range, or noise alone jumps by 256 counts";
+        return Outcome { limit: untestable(&CARD, "readings", why), ..Outcome::default() };
+    }
     let (mut torn, mut others, mut share, mut channels) = (Vec::new(), 0.03, 0.0_f64, 0u8);
-    let mut tested = false;
-    for (range, triad) in ranges {
-        for channel in triad {
-            let Some(count) = count_of(range, view.step[channel]) else { continue };
-            let noise = view.sigma[channel] / count;
-            if by_noise(noise, view.channels[channel].len()) > 1e-3 {
-                continue;
-            }
-            tested = true;
-            for spike in spikes(view, channel, count) {
-                share = share.max(spike.share);
-                if spike.torn {
-                    channels |= 1 << channel;
-                    torn.push(spike.index);
-                } else {
-                    others += 1.0;
-                }
+    for (channel, count) in tested {
+        for spike in spikes(view, channel, count) {
+            share = share.max(spike.share);
+            if spike.torn {
+                channels |= 1 << channel;
+                torn.push(spike.index);
+            } else {
+                others += 1.0;
             }
         }
-    }
-    if !tested {
-        return Outcome {
-            limit: untestable(
-                &CARD,
-                "readings",
-                "readings are not whole counts of a known range, or noise alone jumps by 256 counts",
-            ),
-            ..Outcome::default()
-        };
     }
     let why = "where a channel passes a multiple of 256 counts";
     let mut outcome = Outcome { limit: limit(&CARD, 1.0, "readings", why), ..Outcome::default() };
@@ -80,6 +65,17 @@ pub fn examine(view: &View) -> Outcome {
         outcome.repaired = torn;
     }
     outcome
+}
+
+/// Channels of whole counts, °/s or g each, in which noise does not pass for a torn reading.
+fn tested(view: &View) -> Vec<(usize, f64)> {
+    let inference = view.scene.inference;
+    let count = |channel: usize| {
+        let range = if channel < 3 { inference.gyro_range_dps } else { inference.accel_range_g };
+        let count = count_of(range, view.step[channel])?;
+        (by_noise(view.sigma[channel] / count, view.len()) <= 1e-3).then_some((channel, count))
+    };
+    (0..6).filter_map(count).collect()
 }
 
 /// One count of a range, by the step where it shows: makers' counts differ from range/2^15 by up to 15 %.
@@ -131,11 +127,8 @@ fn spikes(view: &View, channel: usize, count: f64) -> Vec<Spike> {
 
 /// No other channel of the sample jumps by more than a quarter of what this one does, in counts.
 fn alone(view: &View, channel: usize, index: usize) -> bool {
-    let bend = |c: usize| {
-        let v = &view.channels[c];
-        (v[index] - 0.5 * (v[index - 1] + v[index + 1])).abs() / view.step[c].max(1e-9)
-    };
-    let own = bend(channel);
-    let others = (0..6).filter(|c| *c != channel && view.step[*c] > 0.0).map(bend);
+    let counts = |c: usize| view.bend(c, index) / view.step[c].max(1e-9);
+    let own = counts(channel);
+    let others = (0..6).filter(|c| *c != channel && view.step[*c] > 0.0).map(counts);
     others.filter(|other| *other > 0.25 * own).count() <= 1
 }

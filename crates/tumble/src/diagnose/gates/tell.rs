@@ -16,6 +16,13 @@ pub struct Outcome {
     pub imitated: &'static [&'static str],
 }
 
+impl Outcome {
+    /// Not told where another gate's finding explains it; what it could have seen stands.
+    pub fn unless(self, explained: bool) -> Self {
+        Self { found: self.found.filter(|_| !explained), ..self }
+    }
+}
+
 /// An effect by its card. `evidence` is ln of one over the probability of as much by chance.
 pub fn found(card: &Card, evidence: f64, parameters: Vec<Value>, place: Place) -> Found {
     Found {

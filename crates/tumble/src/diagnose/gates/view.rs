@@ -89,6 +89,12 @@ impl<'a> View<'a> {
         Vector3::from_fn(|i, _| self.channels[3 + i][index])
     }
 
+    /// How far a reading is off the middle of its two neighbours, °/s or g.
+    pub fn bend(&self, channel: usize, index: usize) -> f64 {
+        let values = &self.channels[channel];
+        (values[index] - 0.5 * (values[index - 1] + values[index + 1])).abs()
+    }
+
     /// A segment's samples.
     pub fn samples_of(&self, segment: &Segment) -> Range<usize> {
         let at = |t_us: u64| self.t_s.partition_point(|t| *t < t_us as f64 * 1e-6 - 1e-6);

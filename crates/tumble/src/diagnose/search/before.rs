@@ -1,6 +1,5 @@
 //! Generic shapes of what lay on which side before: memories by pose, not by time.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -8,7 +7,7 @@ use nalgebra::Vector3;
 use super::generic::{Family, remembered, up};
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
-use crate::diagnose::twin::influence::{Influence, Push};
+use crate::diagnose::twin::influence::Push;
 use crate::diagnose::twin::rows::CHANNELS;
 
 /// Readings that remember how the sensor lay before.
@@ -25,7 +24,19 @@ pub(super) fn previous_face(twin: &Twin) -> Family {
         }
         before.resize(stretch.number + 1, last);
     }
-    let (members, influences) = by_stretch(before, 0..6, "previous f_");
+    let before = Arc::new(before);
+    let each = (0..6).flat_map(|channel| (0..3).map(move |axis| (channel, axis)));
+    let one = |(channel, axis): (usize, usize)| {
+        let before = before.clone();
+        // 1 °/s or 1 mg for each g.
+        let unit = if channel < 3 { DPS } else { 1e-3 * G };
+        let influence = reading(move |moment| {
+            let force = before.get(moment.stretch).map_or(0.0, |force: &Vector3<f64>| force[axis]);
+            Push::channel(channel, unit * force)
+        });
+        ((channel, format!("previous f_{} on {}", AXES[axis], CHANNELS[channel])), influence)
+    };
+    let (members, influences) = each.map(one).unzip();
     Family { name: "the face before".into(), gyro: false, members, influences }
 }
 
@@ -53,20 +64,4 @@ pub(super) fn last_side(twin: &Twin, gyro: bool) -> Family {
         shape(format!("before {} was loaded", AXES[axis]), &first)
     });
     remembered("the side before", gyro, &known.chain(unknown).collect::<Vec<_>>())
-}
-
-/// A vector that each stretch has, every component of it on each of these channels: 1 °/s or 1 mg per unit.
-fn by_stretch(values: Vec<Vector3<f64>>, channels: Range<usize>, name: &str) -> (Vec<(usize, String)>, Vec<Influence>) {
-    let values = Arc::new(values);
-    let each = channels.flat_map(|channel| (0..3).map(move |axis| (channel, axis)));
-    each.map(|(channel, axis)| {
-        let values = values.clone();
-        let unit = if channel < 3 { DPS } else { 1e-3 * G };
-        let influence = reading(move |moment| {
-            let value = values.get(moment.stretch).map_or(0.0, |value: &Vector3<f64>| value[axis]);
-            Push::channel(channel, unit * value)
-        });
-        ((channel, format!("{name}{} on {}", AXES[axis], CHANNELS[channel])), influence)
-    })
-    .unzip()
 }

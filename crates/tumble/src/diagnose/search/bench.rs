@@ -86,6 +86,28 @@ pub struct Bench {
     made: Vec<(Noise, std::sync::Arc<Rows>)>,
 }
 
+impl Candidate {
+    /// `place` puts influences among the columns.
+    fn new(effect: &'static Effect, model: Model, mut place: impl FnMut(Vec<Influence>) -> Range<usize>) -> Self {
+        let mut candidate = Self { effect, variants: Vec::new(), walk: None, absent: None };
+        match model {
+            Model::Shift(variants) => {
+                let placed = variants.into_iter().map(|variant| Placed {
+                    setting: variant.setting,
+                    parameters: variant.parameters,
+                    columns: place(variant.influences),
+                    own: variant.own,
+                    at_size: variant.at_size,
+                });
+                candidate.variants = placed.collect();
+            }
+            Model::Walk { gyro, unit_si, unit } => candidate.walk = Some((gyro, unit_si, unit)),
+            Model::Absent(why) => candidate.absent = Some(why),
+        }
+        candidate
+    }
+}
+
 impl Bench {
     /// All candidates for a twin, except those in `without`.
     pub fn new(twin: Twin, without: &[String]) -> Self {
@@ -95,27 +117,8 @@ impl Bench {
             all.extend(more.into_iter().map(Column::from));
             first..all.len()
         };
-        let mut candidates = Vec::new();
-        for effect in STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id)) {
-            let mut candidate = Candidate { effect, variants: Vec::new(), walk: None, absent: None };
-            match (effect.model)(&twin) {
-                Model::Shift(variants) => {
-                    candidate.variants = variants
-                        .into_iter()
-                        .map(|variant| Placed {
-                            setting: variant.setting,
-                            parameters: variant.parameters,
-                            columns: place(variant.influences),
-                            own: variant.own,
-                            at_size: variant.at_size,
-                        })
-                        .collect();
-                }
-                Model::Walk { gyro, unit_si, unit } => candidate.walk = Some((gyro, unit_si, unit)),
-                Model::Absent(why) => candidate.absent = Some(why),
-            }
-            candidates.push(candidate);
-        }
+        let known = STRUCTURAL.iter().filter(|effect| !without.iter().any(|id| id == effect.card.id));
+        let candidates = known.map(|effect| Candidate::new(effect, (effect.model)(&twin), &mut place)).collect();
         let families = families(&twin)
             .into_iter()
             .map(|mut family| {
@@ -154,11 +157,31 @@ impl Bench {
         placed.columns.clone().enumerate().map(term).collect()
     }
 
+    /// The candidate that was accepted.
+    pub fn candidate(&self, accepted: &Accepted) -> &Candidate {
+        &self.candidates[accepted.candidate]
+    }
+
+    /// The variant that was accepted; none of a walk.
+    pub fn placed(&self, accepted: &Accepted) -> Option<&Placed> {
+        self.candidate(accepted).variants.get(accepted.variant)
+    }
+
+    /// Is this triad's bias accepted as one that wanders?
+    pub fn wanders(&self, gyro: bool) -> bool {
+        self.accepted.iter().any(|accepted| self.candidate(accepted).walk.is_some_and(|walk| walk.0 == gyro))
+    }
+
+    /// How this triad's bias wanders, if it is accepted as such.
+    pub fn set_wander(&mut self, gyro: bool, density: f64) {
+        *if gyro { &mut self.wander.0 } else { &mut self.wander.1 } = density;
+    }
+
     /// Terms of all that is accepted, but for some.
     pub fn accepted_terms(&self, but: &[usize]) -> Vec<Term> {
         let chosen = self.accepted.iter().enumerate().filter(|(k, _)| !but.contains(k));
         chosen
-            .filter(|(_, accepted)| self.candidates[accepted.candidate].walk.is_none())
+            .filter(|(_, accepted)| self.candidate(accepted).walk.is_none())
             .flat_map(|(_, accepted)| {
                 self.terms(accepted.candidate, accepted.variant, accepted.widening, &accepted.taken)
             })
@@ -237,7 +260,7 @@ impl Bench {
     /// Columns of what is accepted, with what of each is to be taken out of the samples.
     fn taken(&self) -> Vec<(usize, f64)> {
         let columns = self.accepted.iter().filter_map(|accepted| {
-            let placed = self.candidates[accepted.candidate].variants.get(accepted.variant)?;
+            let placed = self.placed(accepted)?;
             Some(placed.columns.clone().zip(accepted.taken.iter().copied()))
         });
         columns.flatten().filter(|(_, taken)| *taken != 0.0).collect()
@@ -287,7 +310,7 @@ impl Bench {
 
     /// Terms that put an accepted effect back at exactly the size at which it was taken out of the samples.
     pub fn put_back(&self, accepted: &Accepted) -> Vec<Term> {
-        if self.candidates[accepted.candidate].walk.is_some() {
+        if self.candidate(accepted).walk.is_some() {
             return Vec::new();
         }
         let back = self.terms(accepted.candidate, accepted.variant, accepted.widening, &accepted.taken);

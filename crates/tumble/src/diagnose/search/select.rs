@@ -6,7 +6,7 @@ use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, log_mean};
 use super::null;
 use crate::diagnose::numbers::walk_density;
-use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
+use crate::diagnose::twin::noise::{Noise, walk_floor};
 use crate::diagnose::twin::rows::Rows;
 
 /// Effects that one recording can be asked to tell apart.
@@ -72,12 +72,9 @@ pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
 
 /// Where a bias is accepted as wandering, it does so as found.
 fn with_accepted_walks(bench: &Bench, noise: Noise) -> Noise {
-    let found = |gyro: bool| {
-        bench.accepted.iter().any(|a| bench.candidates[a.candidate].walk.is_some_and(|walk| walk.0 == gyro))
-    };
     Noise {
-        bias_walk: if found(true) { bench.wander.0 } else { noise.bias_walk },
-        force_walk: if found(false) { bench.wander.1 } else { noise.force_walk },
+        bias_walk: if bench.wanders(true) { bench.wander.0 } else { noise.bias_walk },
+        force_walk: if bench.wanders(false) { bench.wander.1 } else { noise.force_walk },
         ..noise
     }
 }
@@ -120,7 +117,7 @@ fn forward(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&str, f32
 /// A walk can stand for two effects at once, and then leaves neither anything to explain: the search once more without walks.
 /// Names that explain more by the odds that each further one needs take the walk's place.
 fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&str, f32)) {
-    if !bench.accepted.iter().any(|accepted| bench.candidates[accepted.candidate].walk.is_some()) {
+    if !(bench.wanders(true) || bench.wanders(false)) {
         return;
     }
     let evidence = settle_walks(bench).1;
@@ -148,16 +145,12 @@ fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&
 /// Walks stand at levels a factor of four apart in variance, and what the level lacks another name may seem to have: each at its
 /// own maximum before what no longer pays goes.
 fn refine_walks(bench: &mut Bench) {
-    let walks: Vec<_> =
-        bench.accepted.iter().filter_map(|accepted| bench.candidates[accepted.candidate].walk).collect();
+    let walks: Vec<_> = bench.accepted.iter().filter_map(|accepted| bench.candidate(accepted).walk).collect();
     for (gyro, ..) in walks {
         let noise = settle_walks(bench).0;
-        bench.twin.noise = noise;
         let found = walk_density(bench, noise, gyro).density;
-        let wander = if gyro { &mut bench.wander.0 } else { &mut bench.wander.1 };
-        *wander = found;
+        bench.set_wander(gyro, found);
     }
-    bench.twin.noise = settle_walks(bench).0;
 }
 
 /// Takes a candidate in, unless its non-linear refit does not hold what the linear score promised, or its numbers have no
@@ -169,11 +162,7 @@ fn accept(bench: &mut Bench, best: &Score, threshold: f64) -> bool {
     bench.accepted.push(Accepted { candidate, variant, widening, taken: vec![0.0; parameters] });
     bench.twin.noise = best.noise;
     if let Some((gyro, ..)) = bench.candidates[candidate].walk {
-        if gyro {
-            bench.wander.0 = best.noise.bias_walk;
-        } else {
-            bench.wander.1 = best.noise.force_walk;
-        }
+        bench.set_wander(gyro, best.noise.walk(gyro));
     }
     bench.refit();
     let (noise, after) = settle_walks(bench);
@@ -192,7 +181,7 @@ fn accept(bench: &mut Bench, best: &Score, threshold: f64) -> bool {
 /// Are the last one's numbers possible? What cannot be negative must not be so by three sigma.
 fn is_meaningful(bench: &mut Bench) -> bool {
     let Some(last) = bench.accepted.last().cloned() else { return true };
-    let Some(placed) = bench.candidates[last.candidate].variants.get(last.variant).cloned() else { return true };
+    let Some(placed) = bench.placed(&last).cloned() else { return true };
     let terms = bench.accepted_terms(&[]);
     let fit = bench.fit_alone(bench.twin.noise, &terms);
     let first = terms.len() - placed.parameters.len();
@@ -281,14 +270,10 @@ fn is_accepted(bench: &Bench, candidate: usize) -> bool {
 fn score_walk(bench: &mut Bench, candidate: usize, settled: Noise, whole: f64) -> Score {
     let gyro = bench.candidates[candidate].walk.is_some_and(|walk| walk.0);
     let terms = bench.accepted_terms(&[]);
-    let level = |level: f64| {
-        if gyro {
-            Noise { bias_walk: level * BIAS_WALK_FLOOR, ..settled }
-        } else {
-            Noise { force_walk: level * FORCE_WALK_FLOOR, ..settled }
-        }
-    };
-    let found = WANDERING.map(|at| (bench.fit_alone(level(at), &terms).evidence, level(at)));
+    let found = WANDERING.map(|level| {
+        let noise = settled.with_walk(gyro, level * walk_floor(gyro));
+        (bench.fit_alone(noise, &terms).evidence, noise)
+    });
     let best = found.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map_or(settled, |best| best.1);
     let gain = log_mean(&found.map(|(evidence, _)| evidence)) - whole;
     Score { candidate, gain, variant: 0, widening: 1.0, noise: best }

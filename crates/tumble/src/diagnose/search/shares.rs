@@ -9,8 +9,7 @@ const FREE: f64 = 10.0;
 
 /// How many parameters an accepted effect has in the fit.
 pub fn parameters(bench: &Bench, k: usize) -> usize {
-    let accepted = &bench.accepted[k];
-    bench.candidates[accepted.candidate].variants.get(accepted.variant).map_or(0, |placed| placed.parameters.len())
+    bench.placed(&bench.accepted[k]).map_or(0, |placed| placed.parameters.len())
 }
 
 /// The same terms with priors so wide that they tell nothing.

@@ -5,9 +5,13 @@
 //! factor against the null; by Markov's inequality it exceeds B by chance in at most 1/B of recordings, whatever the
 //! blocks have in common.
 
+use nalgebra::DVector;
+
 use super::bench::Bench;
+use super::generic::Family;
 use super::ledger::{Fit, Ledger, Term, log_mean};
 use super::null::FALSE_ALARMS;
+use crate::diagnose::twin::rows::Rows;
 
 /// Sizes presumed, in sigmas of a column.
 const SIZES: [f64; 4] = [3.0, 12.0, 50.0, 200.0];
@@ -39,7 +43,7 @@ pub struct Leftover {
     /// The best block's share of each row.
     pub signal: Vec<f64>,
     /// The rows that it was found in.
-    pub rows: crate::diagnose::twin::rows::Rows,
+    pub rows: Rows,
 }
 
 impl Leftover {
@@ -62,43 +66,50 @@ impl Leftover {
 fn blocks(bench: &Bench) -> Vec<Block> {
     let mut blocks = Vec::new();
     for (index, (family, _)) in bench.families.iter().enumerate() {
-        let count = family.members.len();
-        let mut add = |members: Vec<usize>| blocks.push(Block { family: index, members });
-        (0..count).for_each(|member| add(vec![member]));
         let mut channels: Vec<usize> = family.members.iter().map(|member| member.0).collect();
         channels.dedup();
-        if count <= WIDEST && count > 3 {
-            add((0..count).collect());
+        let mut members = apart(family, &channels);
+        members.extend(across(family, channels.len()));
+        blocks.extend(members.into_iter().map(|members| Block { family: index, members }));
+    }
+    blocks
+}
+
+/// Every member alone, all of them, and those of each channel.
+fn apart(family: &Family, channels: &[usize]) -> Vec<Vec<usize>> {
+    let count = family.members.len();
+    let mut blocks: Vec<Vec<usize>> = (0..count).map(|member| vec![member]).collect();
+    if count <= WIDEST && count > 3 {
+        blocks.push((0..count).collect());
+    }
+    let on = |channel: &usize| (0..count).filter(|&m| family.members[m].0 == *channel).collect::<Vec<_>>();
+    blocks.extend(channels.iter().map(on).filter(|on| on.len() > 1 && on.len() <= WIDEST));
+    blocks
+}
+
+/// The same shape on all channels, and what goes together of several shapes.
+fn across(family: &Family, channels: usize) -> Vec<Vec<usize>> {
+    let per_channel = family.members.len() / channels.max(1);
+    let mut blocks: Vec<Vec<usize>> =
+        (0..per_channel).map(|shape| (0..channels).map(|k| k * per_channel + shape).collect()).collect();
+    // Shapes come in threes, one an axis: each axis on its own channel, on the next, and on the one after, as in a product of
+    // vectors.
+    if channels == 3 {
+        for (three, on) in (0..per_channel / 3).flat_map(|three| (0..3).map(move |on| (3 * three, on))) {
+            blocks.push((0..3).map(|k| k * per_channel + three + (k + on) % 3).collect());
         }
-        let on = |channel: usize| (0..count).filter(|&m| family.members[m].0 == channel).collect::<Vec<_>>();
-        for &channel in &channels {
-            if on(channel).len() > 1 && on(channel).len() <= WIDEST {
-                add(on(channel));
-            }
+        // All of them at once, each axis on its own channel.
+        if per_channel > 3 && 3 * (per_channel / 3) <= WIDEST {
+            let own = |k: usize| (0..per_channel / 3).map(move |three| k * per_channel + 3 * three + k);
+            blocks.push((0..3).flat_map(own).collect());
         }
-        // The same shape on all channels, and sine with cosine on one and on all.
-        let per_channel = count / channels.len().max(1);
-        for shape in 0..per_channel {
-            add((0..channels.len()).map(|k| k * per_channel + shape).collect());
-        }
-        // Shapes come in threes, one an axis: each axis on its own channel, on the next, and on the one after, as in a product of
-        // vectors.
-        if channels.len() == 3 {
-            for (three, on) in (0..per_channel / 3).flat_map(|three| (0..3).map(move |on| (3 * three, on))) {
-                add((0..3).map(|k| k * per_channel + three + (k + on) % 3).collect());
-            }
-            // All of them at once, each axis on its own channel.
-            if per_channel > 3 && 3 * (per_channel / 3) <= WIDEST {
-                let own = |k: usize| (0..per_channel / 3).map(move |three| k * per_channel + 3 * three + k);
-                add((0..3).flat_map(own).collect());
-            }
-        }
-        if family.name == "slow oscillation" {
-            for pair in 0..per_channel / 2 {
-                let both = |k: usize| [k * per_channel + 2 * pair, k * per_channel + 2 * pair + 1];
-                (0..channels.len()).for_each(|k| add(both(k).to_vec()));
-                add((0..channels.len()).flat_map(both).collect());
-            }
+    }
+    // Sine with cosine, on one channel and on all.
+    if family.name == "slow oscillation" {
+        for pair in 0..per_channel / 2 {
+            let both = |k: usize| [k * per_channel + 2 * pair, k * per_channel + 2 * pair + 1];
+            blocks.extend((0..channels).map(|k| both(k).to_vec()));
+            blocks.push((0..channels).flat_map(both).collect());
         }
     }
     blocks
@@ -106,78 +117,103 @@ fn blocks(bench: &Bench) -> Vec<Block> {
 
 /// Weighs all blocks beside what is accepted; in the place of those in `instead_of`, aliases of them left out.
 pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
-    let accepted = bench.accepted_terms(instead_of);
-    let replaced: Vec<Term> = instead_of.iter().flat_map(|&k| bench.put_back(&bench.accepted[k])).collect();
-    let own = replaced.clone();
+    let (given, rows) = Given::new(bench, instead_of);
     let first = bench.candidate_columns();
-    let mut columns: Vec<usize> = accepted.iter().chain(&replaced).map(|term| term.column).collect();
-    let given = columns.len();
-    columns.extend(first..bench.columns.len());
-    let rows = bench.rows_of(&columns);
-    let ledger = Ledger::new(&rows, |_| true);
-    let mut terms: Vec<Term> = accepted.iter().chain(&replaced).copied().collect();
-    terms.iter_mut().enumerate().for_each(|(k, term)| term.column = k);
-    let whole = ledger.fit(&terms);
-    // Columns of the effect itself among the given: its put-back terms stand last.
-    let own: Vec<usize> = (given - own.len().min(given)..given).collect();
     let (mut all, mut ranking, mut aliases) = (Vec::new(), Vec::new(), Vec::new());
-    let mut best: Option<(f64, Vec<Term>, Fit)> = None;
+    let mut best: Option<Beside> = None;
     for block in blocks(bench) {
-        let start = bench.families[block.family].1.start;
-        let local: Vec<usize> = block.members.iter().map(|member| given + start - first + member).collect();
-        let gram = ledger.gram(&whole.scales, &local, &local);
-        let mut gains = Vec::with_capacity(SIZES.len());
-        let mut strongest: Option<(f64, Vec<Term>, Fit)> = None;
-        for size in SIZES {
-            let mut model = terms.clone();
-            model.extend(local.iter().enumerate().filter(|(i, _)| gram[(*i, *i)] > 1e-12).map(|(i, &column)| Term {
-                column,
-                width: size / gram[(i, i)].sqrt(),
-                mean: 0.0,
-            }));
-            let fit = ledger.fit(&model);
-            let gain = fit.evidence - whole.evidence;
-            gains.push(gain);
-            if strongest.as_ref().is_none_or(|strongest| gain > strongest.0) {
-                strongest = Some((gain, model, fit));
-            }
-        }
-        let Some((gain, model, fit)) = strongest else { continue };
-        if !own.is_empty() && is_alias(&ledger, &fit, &model[given..], given, &own) {
-            aliases.push((block, gain));
+        let start = given.terms.len() + bench.families[block.family].1.start - first;
+        let columns: Vec<usize> = block.members.iter().map(|member| start + member).collect();
+        let Some((mean, strongest)) = given.with(&columns) else { continue };
+        if given.is_alias(&strongest) {
+            aliases.push((block, strongest.gain));
             continue;
         }
-        all.push(log_mean(&gains));
-        ranking.push((block, gain));
-        if best.as_ref().is_none_or(|best| gain > best.0) {
-            best = Some((gain, model, fit));
+        all.push(mean);
+        ranking.push((block, strongest.gain));
+        if best.as_ref().is_none_or(|best| strongest.gain > best.gain) {
+            best = Some(strongest);
         }
     }
-    let share = |i: usize| {
-        let (_, model, fit) = best.as_ref()?;
-        let block = model.iter().zip(fit.theta.iter()).skip(given);
-        Some(block.map(|(term, theta)| rows.responses[(i, term.column)] * theta).sum())
-    };
-    let signal = (0..rows.at.len()).map(|i| share(i).unwrap_or(0.0)).collect();
+    let signal = (0..rows.at.len()).map(|i| best.as_ref().map_or(0.0, |best| best.share(&rows, i))).collect();
     ranking.sort_by(|a: &(Block, f64), b| b.1.total_cmp(&a.1));
-    Leftover { evidence: log_mean(&all), base: whole.evidence, ranking, aliases, signal, rows }
+    Leftover { evidence: log_mean(&all), base: given.whole.evidence, ranking, aliases, signal, rows }
 }
 
-/// Does the effect itself explain the block's signal?
-fn is_alias(ledger: &Ledger, fit: &Fit, block: &[Term], given: usize, own: &[usize]) -> bool {
-    let columns: Vec<usize> = block.iter().map(|term| term.column).collect();
-    let theta = fit.theta.rows(given, block.len()).into_owned();
-    shared(ledger, &fit.scales, &columns, &theta, own) > ALIAS
+/// What blocks are weighed beside.
+struct Given {
+    /// Over rows that carry the columns of `terms`, in their order, and after them those of all shapes.
+    ledger: Ledger,
+    /// Of what is accepted, and last those that put back what blocks are to take the place of.
+    terms: Vec<Term>,
+    /// How many those are.
+    replaced: usize,
+    /// Without any block.
+    whole: Fit,
+}
+
+/// A block beside what is given, at the size at which it gains most.
+struct Beside {
+    gain: f64,
+    /// The block's own.
+    terms: Vec<Term>,
+    /// θ of the block's terms.
+    theta: DVector<f64>,
+    /// Of the fit's rows.
+    scales: [f64; 6],
+}
+
+impl Given {
+    fn new(bench: &mut Bench, instead_of: &[usize]) -> (Self, Rows) {
+        let mut terms = bench.accepted_terms(instead_of);
+        let accepted = terms.len();
+        terms.extend(instead_of.iter().flat_map(|&k| bench.put_back(&bench.accepted[k])));
+        let mut columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
+        columns.extend(bench.candidate_columns()..bench.columns.len());
+        let rows = bench.rows_of(&columns);
+        let ledger = Ledger::new(&rows, |_| true);
+        terms.iter_mut().enumerate().for_each(|(k, term)| term.column = k);
+        let whole = ledger.fit(&terms);
+        (Self { ledger, replaced: terms.len() - accepted, terms, whole }, rows)
+    }
+
+    /// ln of the block's mean Bayes factor over all sizes, and its best.
+    fn with(&self, columns: &[usize]) -> Option<(f64, Beside)> {
+        let gram = self.ledger.gram(&self.whole.scales, columns, columns);
+        let mut gains = Vec::with_capacity(SIZES.len());
+        let mut strongest: Option<Beside> = None;
+        for size in SIZES {
+            let shown = columns.iter().enumerate().filter(|(i, _)| gram[(*i, *i)] > 1e-12);
+            let term = |(i, &column): (usize, &usize)| Term { column, width: size / gram[(i, i)].sqrt(), mean: 0.0 };
+            let terms: Vec<Term> = shown.map(term).collect();
+            let fit = self.ledger.fit(&[self.terms.as_slice(), &terms].concat());
+            let gain = fit.evidence - self.whole.evidence;
+            gains.push(gain);
+            if strongest.as_ref().is_none_or(|strongest| gain > strongest.gain) {
+                let theta = fit.theta.rows(self.terms.len(), terms.len()).into_owned();
+                strongest = Some(Beside { gain, terms, theta, scales: fit.scales });
+            }
+        }
+        Some((log_mean(&gains), strongest?))
+    }
+
+    /// Does the effect that it would replace itself explain the block's signal?
+    fn is_alias(&self, block: &Beside) -> bool {
+        let columns: Vec<usize> = block.terms.iter().map(|term| term.column).collect();
+        let own: Vec<usize> = (self.terms.len() - self.replaced..self.terms.len()).collect();
+        self.replaced > 0 && shared(&self.ledger, &block.scales, &columns, &block.theta, &own) > ALIAS
+    }
+}
+
+impl Beside {
+    /// The block's share of a row.
+    fn share(&self, rows: &Rows, i: usize) -> f64 {
+        self.terms.iter().zip(&self.theta).map(|(term, theta)| rows.responses[(i, term.column)] * theta).sum()
+    }
 }
 
 /// Share of the signal of some columns at θ that other columns can imitate: `|P s|² / |s|²`.
-pub fn shared(
-    ledger: &Ledger,
-    scales: &[f64; 6],
-    columns: &[usize],
-    theta: &nalgebra::DVector<f64>,
-    others: &[usize],
-) -> f64 {
+pub fn shared(ledger: &Ledger, scales: &[f64; 6], columns: &[usize], theta: &DVector<f64>, others: &[usize]) -> f64 {
     let own = ledger.gram(scales, columns, columns);
     let size = theta.dot(&(&own * theta));
     if size <= 0.0 || others.is_empty() {

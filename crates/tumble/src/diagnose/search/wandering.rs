@@ -74,24 +74,10 @@ pub fn refute(bench: &mut Bench, gyro: bool) -> Option<(&'static str, f64)> {
 /// Innovations at rest by channel and stretch: when, s, and over their sigmas.
 type Left = BTreeMap<(usize, usize), Vec<(f64, f64)>>;
 
-/// White noise's density over the given one. That is measured by differences of neighbouring means, to which a strong walk
-/// adds a third of its increment; and a row is the walk's mean over its half second, not its value, which leaves the noise
-/// less a sixth of it. Whiteness is asked for at the density of most evidence.
-const DENSITIES: [f64; 4] = [1.0, 0.7, 0.5, 0.3];
-
 /// With all that is accepted.
 fn innovations(bench: &mut Bench, gyro: bool) -> Left {
-    let found = bench.twin.noise;
-    let terms = bench.accepted_terms(&[]);
-    let at = |density: f64| match gyro {
-        true => Noise { rate_density: found.rate_density * density, ..found },
-        false => Noise { force_density: found.force_density * density, ..found },
-    };
-    let best = DENSITIES.map(|density| (density, bench.fit_alone(at(density), &terms).evidence));
-    let best = best.into_iter().fold((1.0, f64::NEG_INFINITY), |best, next| if next.1 > best.1 { next } else { best });
-    let rows = bench.rows(at(best.0));
+    let rows = bench.rows(bench.twin.noise);
     let left = shares::left(bench, &rows);
-    bench.twin.noise = found;
     let class = if gyro { Class::RestRate } else { Class::RestForce };
     let mut by_place = Left::new();
     for (at, value) in rows.at.iter().zip(&left).filter(|(at, _)| at.class == class) {

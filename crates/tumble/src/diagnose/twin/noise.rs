@@ -49,7 +49,23 @@ const RECORD_S: f64 = 0.5;
 /// White noise is not believed to be less than this share of what was measured.
 const LEAST_WHITE: f64 = 0.1;
 
+/// The gyroscope's or the accelerometer's.
+pub fn walk_floor(gyro: bool) -> f64 {
+    if gyro { BIAS_WALK_FLOOR } else { FORCE_WALK_FLOOR }
+}
+
 impl Noise {
+    /// How the gyroscope's bias wanders, (rad/s)²/s, or the accelerometer's, (m/s²)²/s.
+    pub fn walk(&self, gyro: bool) -> f64 {
+        if gyro { self.bias_walk } else { self.force_walk }
+    }
+
+    /// The same with one triad's bias wandering as said.
+    #[must_use]
+    pub fn with_walk(&self, gyro: bool, walk: f64) -> Self {
+        if gyro { Self { bias_walk: walk, ..*self } } else { Self { force_walk: walk, ..*self } }
+    }
+
     /// Variance of a mean rate over `duration_s` about the bias in its middle, (rad/s)².
     pub fn rate_mean(&self, duration_s: f64) -> f64 {
         of_mean(self.rate_density, self.bias_walk, duration_s)

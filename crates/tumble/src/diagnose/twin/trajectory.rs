@@ -63,8 +63,8 @@ pub struct Moment {
     /// Its mean over a sixth of a second. An axis that hardly turns reads its own noise.
     pub mean_rate: Vector3<f64>,
     /// The same for what depends on its sign, which noise would turn; zero where it does not stand
-    /// out. The residual is made of the same noise: a regressor that takes noise's sign explains noise (sign(x + n) and n correlate by 0.8 σ_n/σ, which 1400 windows of a session make thirty
-    /// sigma for a rate that is noise alone).
+    /// out. The residual is made of the same noise: a regressor that takes noise's sign explains noise (sign(x + n) and n correlate by 0.8 σ_n/σ,
+    /// which 1400 windows of a session make thirty sigma for a rate that is noise alone).
     pub smooth_rate: Vector3<f64>,
     /// How far the true rate may be from that mean, 1 sigma: how it trembles about it beyond the noise, and how uncertain the
     /// mean is. Zero at rest on something solid.

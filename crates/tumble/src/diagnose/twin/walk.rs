@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::{DMatrix, UnitQuaternion, Vector3};
 use tumble_core::face::Face;
 use tumble_core::motion::path::WHOLE_TURN;
 
@@ -20,7 +20,7 @@ use super::{Pass, noise};
 
 struct Visit {
     face: Face,
-    first: nalgebra::UnitQuaternion<f64>,
+    first: UnitQuaternion<f64>,
     turned_rad: f64,
     last_turn: usize,
 }
@@ -227,25 +227,7 @@ impl<'a> Walk<'a> {
                 true
             }
             Some(mut visit) => {
-                let columns = self.columns;
-                let left = (attitude * visit.first.inverse()).scaled_axis().dot(&normal_n);
-                let turned = visit.turned_rad.abs();
-                if turned > std::f64::consts::PI && left.abs() < f64::from(WHOLE_TURN) {
-                    visit.turned_rad = 0.0;
-                    let observation = Observation::new(left, sigma * sigma)
-                        .with(state::ATTITUDE, (-normal_n).iter().copied())
-                        .with(state::FENCE, [1.0]);
-                    let turn = visit.last_turn;
-                    let ends = |c: usize| match &columns[c].influence {
-                        Influence::Stop(turns) => {
-                            turns.iter().filter(|(stretch, _)| *stretch == turn).map(|(_, unit)| unit).sum()
-                        }
-                        _ => 0.0,
-                    };
-                    let whitened = self.state.observe(&observation, ends);
-                    let late = self.alternating();
-                    self.push(whitened, Class::Closure, face.axis(), stretch, middle_s, late);
-                }
+                self.close(&mut visit, stretch, &attitude, &normal_n, middle_s);
                 self.visit = Some(visit);
                 false
             }
@@ -255,6 +237,36 @@ impl<'a> Walk<'a> {
                 self.state.reset(state::FACET, 2, facet);
             }
             self.plate(stretch, face, &normal_n, middle_s);
+        }
+    }
+
+    /// Whole turns since the face came to the table end at the stop at which they began.
+    fn close(
+        &mut self,
+        visit: &mut Visit,
+        stretch: &Stretch,
+        attitude: &UnitQuaternion<f64>,
+        normal_n: &Vector3<f64>,
+        middle_s: f64,
+    ) {
+        let left = (attitude * visit.first.inverse()).scaled_axis().dot(normal_n);
+        let turned = visit.turned_rad.abs();
+        if turned > std::f64::consts::PI && left.abs() < f64::from(WHOLE_TURN) {
+            visit.turned_rad = 0.0;
+            let sigma = self.pass.noise.stop_sigma_rad;
+            let observation = Observation::new(left, sigma * sigma)
+                .with(state::ATTITUDE, (-normal_n).iter().copied())
+                .with(state::FENCE, [1.0]);
+            let columns = self.columns;
+            let ends = |c: usize| match &columns[c].influence {
+                Influence::Stop(turns) => {
+                    turns.iter().filter(|(stretch, _)| *stretch == visit.last_turn).map(|(_, unit)| unit).sum()
+                }
+                _ => 0.0,
+            };
+            let whitened = self.state.observe(&observation, ends);
+            let late = self.alternating();
+            self.push(whitened, Class::Closure, visit.face.axis(), stretch, middle_s, late);
         }
     }
 
