@@ -8,7 +8,7 @@
 use super::catalogue::earth_rotation;
 use super::exhibits;
 use super::findings::{Finding, TIE};
-use super::search::bench::{Accepted, Bench, HEALTHY, with_walks};
+use super::search::bench::{Accepted, Bench};
 use super::search::select::Selection;
 use super::search::unknown::{self, Leftover};
 use super::search::wandering;
@@ -156,12 +156,12 @@ impl Instead {
     }
 }
 
-/// A walk is a part of the noise in force: in its place that is the null's. What changes with time has raised the null's as far as a
-/// healthy bias wanders, and with a shape for it the least is enough.
+/// A walk is a part of the noise in force: in its place that is the null's. What a shape explains may have raised that too, a healthy
+/// bias's wander or what stops and moves are taken for: with the shape the least noise may do.
 fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Instead {
     let in_force = bench.twin.noise;
     let walks = of.iter().any(|&k| bench.candidate(&bench.accepted[k]).walk.is_some());
-    let least = with_walks(&selection.null_noise, HEALTHY[0], HEALTHY[0]);
+    let least = bench.least_noise(of);
     let mut noises = vec![selection.null_noise];
     if !walks && in_force != selection.null_noise {
         noises.push(in_force);

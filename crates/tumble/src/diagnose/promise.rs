@@ -36,7 +36,7 @@ pub fn of_effect(recording: &Recording, options: &Options, id: &str) -> Option<f
 pub fn of_shapes(recording: &Recording, options: &Options) -> Option<(f64, f64)> {
     let mut bench = bench(recording, &knowing(options, |_| false)).ok()?;
     bench.twin.noise = select::settle_walks(&mut bench).0;
-    Some((unknown::weigh(&mut bench, &[]).evidence, -FALSE_ALARMS.ln()))
+    Some((unknown::left_over(&mut bench).evidence, -FALSE_ALARMS.ln()))
 }
 
 /// The numbers of effects that are known to be there, as a diagnosis would state them: the search as ever, but with nothing else

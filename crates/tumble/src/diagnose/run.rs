@@ -60,7 +60,7 @@ fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut 
         );
     }
     progress("what is left", 0.85);
-    let leftover = unknown::weigh(&mut bench, &[]);
+    let leftover = unknown::left_over(&mut bench);
     let found = findings::findings(&mut bench, &selection, origin_s);
     let mut judged = judge(&mut bench, &selection, &leftover, found);
     if gated.found.iter().any(|found| !HARMLESS.contains(&found.id.as_str())) {

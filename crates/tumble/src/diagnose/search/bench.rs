@@ -172,6 +172,26 @@ impl Bench {
         self.accepted.iter().any(|accepted| self.candidate(accepted).walk.is_some_and(|walk| walk.0 == gyro))
     }
 
+    /// Where a bias is accepted as wandering, but for those in `but`, it does so as found.
+    #[must_use]
+    pub fn with_accepted_walks(&self, noise: &Noise, but: &[usize]) -> Noise {
+        let found = [true, false].map(|gyro| {
+            let mut others = (0..self.accepted.len()).filter(|k| !but.contains(k));
+            others.any(|k| self.candidate(&self.accepted[k]).walk.is_some_and(|walk| walk.0 == gyro))
+        });
+        Noise {
+            bias_walk: if found[0] { self.wander.0 } else { noise.bias_walk },
+            force_walk: if found[1] { self.wander.1 } else { noise.force_walk },
+            ..*noise
+        }
+    }
+
+    /// Sensor, fence and box at their best: what the device's estimator found beyond that may be an effect that it took for noise.
+    pub fn least_noise(&self, but: &[usize]) -> Noise {
+        let least = with_walks(&self.given.trusting(self.twin.stops), HEALTHY[0], HEALTHY[0]);
+        self.with_accepted_walks(&least, but)
+    }
+
     /// How this triad's bias wanders, if it is accepted as such.
     pub fn set_wander(&mut self, gyro: bool, density: f64) {
         *if gyro { &mut self.wander.0 } else { &mut self.wander.1 } = density;

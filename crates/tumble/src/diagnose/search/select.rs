@@ -51,7 +51,7 @@ pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
     let given = bench.given;
     let mut best = (given, f64::NEG_INFINITY);
     for noise in [given, given.trusting(bench.twin.stops)] {
-        let noise = with_accepted_walks(bench, with_walks(&noise, HEALTHY[1], HEALTHY[1]));
+        let noise = bench.with_accepted_walks(&with_walks(&noise, HEALTHY[1], HEALTHY[1]), &[]);
         let evidence = bench.fit_alone(noise, &terms).evidence;
         if evidence > best.1 {
             best = (noise, evidence);
@@ -60,7 +60,7 @@ pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
     let base = best.0;
     for gyro in HEALTHY {
         for accel in HEALTHY {
-            let noise = with_accepted_walks(bench, with_walks(&base, gyro, accel));
+            let noise = bench.with_accepted_walks(&with_walks(&base, gyro, accel), &[]);
             let evidence = bench.fit_alone(noise, &terms).evidence;
             if evidence > best.1 {
                 best = (noise, evidence);
@@ -68,15 +68,6 @@ pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
         }
     }
     best
-}
-
-/// Where a bias is accepted as wandering, it does so as found.
-fn with_accepted_walks(bench: &Bench, noise: Noise) -> Noise {
-    Noise {
-        bias_walk: if bench.wanders(true) { bench.wander.0 } else { noise.bias_walk },
-        force_walk: if bench.wanders(false) { bench.wander.1 } else { noise.force_walk },
-        ..noise
-    }
 }
 
 /// Runs the search to its end; `progress` hears what is being done.
@@ -216,7 +207,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
     let mut best = f64::NEG_INFINITY;
     for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
         for (gyro, accel) in [(0, 0), (1, 1), (2, 2), (0, 2), (2, 0)] {
-            let walks = with_accepted_walks(bench, with_walks(&base, HEALTHY[gyro], HEALTHY[accel]));
+            let walks = bench.with_accepted_walks(&with_walks(&base, HEALTHY[gyro], HEALTHY[accel]), &[]);
             best = best.max(bench.fit_alone(walks, &terms).evidence);
         }
     }
@@ -229,8 +220,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
 pub fn score(bench: &mut Bench) -> Vec<Score> {
     let (settled, whole) = settle_walks(bench);
     let terms = bench.accepted_terms(&[]);
-    let least = with_walks(&bench.given.trusting(bench.twin.stops), HEALTHY[0], HEALTHY[0]);
-    let least = with_accepted_walks(bench, least);
+    let least = bench.least_noise(&[]);
     let mut noises = vec![settled];
     if least != settled {
         noises.push(least);
