@@ -117,7 +117,7 @@ pub fn circumstances(bench: &Bench, instead: &[Leftover], evidence: f64) -> Vec<
     ];
     // As between names: what is the same signal may lack twice as much, for then the priors' widths alone make the difference; and
     // the twentieth of the whole by which an alias may fall short of being the same.
-    let base = instead.iter().map(|leftover| leftover.base).fold(f64::NEG_INFINITY, f64::max);
+    let base = instead.first().map_or(evidence, |leftover| leftover.base);
     let of_alias = 2.0 * TIE + (1.0 - ALIAS) * (evidence - base).max(0.0);
     let family = |block: &Block| bench.families[block.family].0.name.as_str();
     let mut tied: Vec<(f64, String)> = Vec::new();

@@ -79,6 +79,7 @@ impl Judged {
 pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, found: Vec<Finding>) -> Judged {
     let mut judged = Judged::new(leftover);
     let refuted = refute_walks(bench, &found, &mut judged);
+    let mut dropped = Vec::new();
     for mut finding in found {
         let id = finding.found.id.as_str();
         if refuted.iter().any(|walk| walk.takes_down(&finding)) {
@@ -87,7 +88,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         }
         let Some(k) = bench.accepted.iter().position(|a| bench.candidate(a).effect.card.id == id) else { continue };
         if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
-            judged.dropped.push(finding.found.id.clone());
+            dropped.push((k, finding));
             continue;
         }
         let shapes = shapes_instead(bench, selection, &[k]);
@@ -104,12 +105,29 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.named.push(finding);
         }
     }
+    drop_names(bench, selection, &mut judged, dropped);
     one_for_all(bench, selection, &mut judged);
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
     if judged.unknown {
         judged.demote(|finding| finding.is_walk);
     }
     judged
+}
+
+/// What does not hold on data left out is chance or has the wrong form: the latter if shapes without a name are more than chance in its
+/// place.
+fn drop_names(bench: &mut Bench, selection: &Selection, judged: &mut Judged, dropped: Vec<(usize, Finding)>) {
+    if dropped.is_empty() {
+        return;
+    }
+    let (places, findings): (Vec<usize>, Vec<Finding>) = dropped.into_iter().unzip();
+    let shapes = shapes_instead(bench, selection, &places);
+    if shapes.best().is_real() {
+        judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
+        judged.demoted.extend(findings);
+    } else {
+        judged.dropped.extend(findings.into_iter().map(|finding| finding.found.id));
+    }
 }
 
 /// Several names may stand for one thing that has none, each clear of a shape in its place that leaves the others where they
@@ -173,9 +191,11 @@ fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Ins
         bench.twin.noise = noise;
         unknown::weigh(bench, of)
     };
-    let at = noises.into_iter().map(weigh).collect();
+    let at: Vec<Leftover> = noises.into_iter().map(weigh).collect();
     bench.twin.noise = in_force;
-    Instead { at }
+    // Against the model that explains most without any shape, whichever noise that needs.
+    let base = at.iter().map(|leftover| leftover.base).fold(f64::NEG_INFINITY, f64::max);
+    Instead { at: at.into_iter().map(|leftover| leftover.against(base)).collect() }
 }
 
 /// A walk that is none.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
-use super::ledger::{Ledger, log_mean};
+use super::ledger::{Ledger, Term, log_mean};
 use super::null;
 use crate::diagnose::numbers::walk_density;
 use crate::diagnose::twin::noise::{Noise, walk_floor};
@@ -45,23 +45,20 @@ pub struct Selection {
     pub evidence: f64,
 }
 
-/// The null's noise: how much the biases wander, as far as healthy ones do, by evidence.
+/// The null's noise, by evidence: stops, faces and moves as the device found them or as good as they can be, and biases that wander as
+/// far as healthy ones do.
 pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
     let terms = bench.accepted_terms(&[]);
-    let given = bench.given;
-    let mut best = (given, f64::NEG_INFINITY);
-    for noise in [given, given.trusting(bench.twin.stops)] {
-        let noise = bench.with_accepted_walks(&with_walks(&noise, HEALTHY[1], HEALTHY[1]), &[]);
-        let evidence = bench.fit_alone(noise, &terms).evidence;
-        if evidence > best.1 {
-            best = (noise, evidence);
-        }
-    }
-    let base = best.0;
-    for gyro in HEALTHY {
-        for accel in HEALTHY {
+    best_noise(bench, &terms)
+}
+
+/// All of it together: what one base takes for wander the other takes for moves.
+fn best_noise(bench: &mut Bench, terms: &[Term]) -> (Noise, f64) {
+    let mut best = (bench.given, f64::NEG_INFINITY);
+    for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
+        for (gyro, accel) in HEALTHY.iter().flat_map(|gyro| HEALTHY.iter().map(move |accel| (*gyro, *accel))) {
             let noise = bench.with_accepted_walks(&with_walks(&base, gyro, accel), &[]);
-            let evidence = bench.fit_alone(noise, &terms).evidence;
+            let evidence = bench.fit_alone(noise, terms).evidence;
             if evidence > best.1 {
                 best = (noise, evidence);
             }
@@ -204,13 +201,7 @@ pub fn without(bench: &mut Bench, k: usize) -> f64 {
     // Its share is still taken out of the samples: its columns put it back at exactly that size.
     let mut terms = bench.accepted_terms(&[]);
     terms.extend(bench.put_back(&removed));
-    let mut best = f64::NEG_INFINITY;
-    for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
-        for (gyro, accel) in [(0, 0), (1, 1), (2, 2), (0, 2), (2, 0)] {
-            let walks = bench.with_accepted_walks(&with_walks(&base, HEALTHY[gyro], HEALTHY[accel]), &[]);
-            best = best.max(bench.fit_alone(walks, &terms).evidence);
-        }
-    }
+    let best = best_noise(bench, &terms).1;
     bench.twin.noise = noise;
     bench.accepted.insert(k, removed);
     best

@@ -53,7 +53,7 @@ impl Leftover {
     }
 
     /// Against another model without any block.
-    fn against(mut self, base: f64) -> Self {
+    pub fn against(mut self, base: f64) -> Self {
         let more = self.base - base;
         self.evidence += more;
         self.ranking.iter_mut().chain(&mut self.aliases).for_each(|(_, gain)| *gain += more);
