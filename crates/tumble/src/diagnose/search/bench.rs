@@ -241,8 +241,16 @@ impl Bench {
     /// Fits the nominal anew; what was made about the one before no longer holds.
     pub fn fit_nominal(&mut self) {
         self.made.clear();
+        let terms: Vec<Term> = self
+            .accepted_terms(&[])
+            .into_iter()
+            .filter(|term| self.columns[term.column].influence.reading().is_none())
+            .collect();
+        let chosen: Vec<usize> = terms.iter().map(|term| term.column).collect();
+        let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+        let sizes = |rows: &Rows| Ledger::new(rows, |_| true).fit(&local).theta.iter().copied().collect();
+        self.twin.fit_beside(&mut self.columns, &chosen, sizes);
         self.columns.iter_mut().for_each(Column::forget);
-        self.twin.fit();
     }
 
     /// Takes the accepted effects' best numbers out of the samples and fits the nominal anew: the non-linear refit.

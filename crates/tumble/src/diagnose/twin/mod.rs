@@ -186,9 +186,19 @@ impl Twin {
 
     /// Gauss–Newton from where it stands.
     pub fn fit(&mut self) {
+        self.fit_beside(&mut [], &[], |_| Vec::new());
+    }
+
+    /// The same beside effects that cannot be taken out of the readings: those of `columns` in `chosen`, at the sizes that each pass's rows
+    /// say. (A table that leans anew by 4° would else bend the sensor's axes by a milliradian and more.)
+    pub fn fit_beside(&mut self, columns: &mut [Column], chosen: &[usize], sizes: impl Fn(&Rows) -> Vec<f64>) {
         self.follow();
         for _ in 0..PASSES {
-            let (_, state) = self.pass(&[]);
+            columns.iter_mut().for_each(Column::forget);
+            chosen.iter().for_each(|&index| columns[index].make(self));
+            let beside: Vec<&Column> = chosen.iter().map(|&index| &columns[index]).collect();
+            let (rows, mut state) = self.pass(&beside);
+            state.allow_for(&sizes(&rows));
             let step = self.take(&state);
             self.follow();
             if step < CONVERGED {

@@ -148,6 +148,13 @@ impl State {
         (first..first + count).for_each(|index| self.covariance[(index, index)] += variance);
     }
 
+    /// The mean with candidates of these sizes there.
+    pub fn allow_for(&mut self, sizes: &[f64]) {
+        for (column, size) in self.columns.iter().zip(sizes) {
+            self.mean += SVector::from(*column) * *size;
+        }
+    }
+
     /// A noisy clone of `φ · normal`.
     pub fn clone_heading(&mut self, normal: &Vector3<f64>, sigma: f64) {
         self.reset(FENCE, 1, 0.0);
