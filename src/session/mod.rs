@@ -15,6 +15,7 @@ use embassy_time::{Duration, Instant, Ticker};
 use mpu9250_spi::{Identity, SelfTest, Standing};
 use static_cell::{ConstStaticCell, StaticCell};
 use tumble_core::command::{Command, CommandError};
+use tumble_core::estimate::Estimator;
 use tumble_core::message::{Message, Trouble};
 use tumble_core::procedure::{Phase, Procedure, Setup};
 use tumble_core::record::Origin;
@@ -38,6 +39,9 @@ const RANGES: Ranges = Ranges::WIDEST;
 const RECORDS: usize = 3072;
 /// Rests, turns and moves. A double scheme without a mistake has 40.
 const SEGMENTS: usize = 160;
+
+/// The whole estimate, what it is made from and what it is made in, takes less than half of the memory.
+const _: () = assert!(size_of::<Tape<RECORDS, SEGMENTS>>() + size_of::<Estimator<SEGMENTS>>() <= 64 * 1024);
 
 /// What can happen to the session.
 enum Input {

@@ -1,8 +1,12 @@
 //! A turn that should have been whole stopped short or went too far, by more than its stop allows.
 
+use std::f64::consts::PI;
+
+use tumble_core::motion::path::WHOLE_TURN;
+
 use super::{Card, DPS, Effect, Model, Variant, parameter};
 use crate::diagnose::twin::Twin;
-use crate::diagnose::twin::data::{Deed, Stretch};
+use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::influence::Influence;
 
 const CARD: Card = Card {
@@ -30,21 +34,21 @@ fn model(twin: &Twin) -> Model {
         own: None,
         at_size: None,
     };
-    let at = |turn: &Stretch| Some(("at", twin.samples[turn.samples.end - 1].t_s, "s"));
+    let at = |turn: &Turn| Some(("at", twin.samples[turn.end - 1].t_s, "s"));
     let mut variants = Vec::new();
     let mut every = Vec::new();
     for visit in &visits {
         let mut missing = 0.0;
         for (k, turn) in visit.iter().enumerate() {
             // One stop off the mark: the next is not.
-            variants.push(variant(at(turn), vec![(turn.number, sign(turn) * DPS)]));
+            variants.push(variant(at(turn), vec![(turn.last, turn.sign * DPS)]));
             // One turn short, and what follows on this face starts from where it ended.
-            let after = visit[k..].iter().map(|later| (later.number, sign(turn) * DPS)).collect::<Vec<_>>();
+            let after = visit[k..].iter().map(|later| (later.last, turn.sign * DPS)).collect::<Vec<_>>();
             if after.len() > 1 {
                 variants.push(variant(at(turn), after));
             }
-            missing += sign(turn) * DPS;
-            every.push((turn.number, missing));
+            missing += turn.sign * DPS;
+            every.push((turn.last, missing));
         }
     }
     // Every turn short by the same.
@@ -52,24 +56,37 @@ fn model(twin: &Twin) -> Model {
     Model::Shift(variants)
 }
 
-/// What is missing of a turn counter-clockwise leaves the heading behind, of one clockwise ahead.
-fn sign(turn: &Stretch) -> f64 {
-    match turn.deed {
-        Deed::Turn { angle_rad, .. } => -angle_rad.signum(),
-        _ => 0.0,
-    }
+/// A whole turn, in one go or in steps.
+struct Turn {
+    /// Stretch of its last step.
+    last: usize,
+    /// Sample after it.
+    end: usize,
+    /// What is missing of a turn counter-clockwise leaves the heading behind, of one clockwise ahead.
+    sign: f64,
 }
 
-/// Whole turns by stays on a face.
-fn visits(twin: &Twin) -> Vec<Vec<&Stretch>> {
-    let mut visits: Vec<Vec<&Stretch>> = vec![Vec::new()];
+/// Whole turns by stays on a face, as the twin closes them: more than half a turn since the last stop, and nearly back.
+fn visits(twin: &Twin) -> Vec<Vec<Turn>> {
+    let attitude = |sample: usize| twin.trajectory.moments[sample].attitude;
+    let mut visits: Vec<Vec<Turn>> = vec![Vec::new()];
+    let mut since: Option<(usize, f64)> = None;
     for stretch in &twin.stretches {
-        match stretch.deed {
-            Deed::Move => visits.push(Vec::new()),
-            _ if stretch.is_whole_turn() => {
-                if let Some(visit) = visits.last_mut() {
-                    visit.push(stretch);
+        let end = stretch.samples.end;
+        match (stretch.deed, visits.last_mut()) {
+            (Deed::Turn { angle_rad, .. }, Some(visit)) if !stretch.excluded => {
+                let (first, turned) = since.unwrap_or((stretch.samples.start, 0.0));
+                let turned = turned + angle_rad;
+                let off = attitude(end - 1).angle_to(&attitude(first));
+                let back = turned.abs() > PI && off < f64::from(WHOLE_TURN);
+                since = (!back).then_some((first, turned));
+                if back {
+                    visit.push(Turn { last: stretch.number, end, sign: -turned.signum() });
                 }
+            }
+            (Deed::Move | Deed::Turn { .. }, _) => {
+                visits.push(Vec::new());
+                since = None;
             }
             _ => {}
         }

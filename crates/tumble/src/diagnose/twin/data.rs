@@ -5,7 +5,6 @@ use std::ops::Range;
 use nalgebra::Vector3;
 use tumble_core::estimate::noise::{self, Noise};
 use tumble_core::face::Face;
-use tumble_core::motion::path::whole_turns;
 use tumble_core::tape::{Exclusion, Kind, Segment};
 
 use crate::recording::{Row, STANDARD_GRAVITY_MPS2};
@@ -84,11 +83,6 @@ impl Stretch {
             Deed::Turn { face, .. } => Some(face),
             _ => None,
         }
-    }
-
-    /// Is it a turn by a whole number of revolutions?
-    pub fn is_whole_turn(&self) -> bool {
-        matches!(self.deed, Deed::Turn { angle_rad, .. } if whole_turns(angle_rad as f32).is_some_and(|n| n != 0))
     }
 
     /// Length, s.
