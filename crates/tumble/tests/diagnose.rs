@@ -100,3 +100,35 @@ fn one_pose_supports_no_verdict() {
     assert_eq!(diagnosis.verdict, Verdict::NotTestable, "{diagnosis:?}");
     assert!(!diagnosis.reasons.is_empty());
 }
+
+/// The greater part of a field 65° below level is a sensitivity to gravity, and moves may be excused as noisy: neither is said.
+#[test]
+fn a_field_of_the_room_is_no_sensitivity_to_gravity() {
+    let (recording, _) = recording(Scheme::Double, 9, Some("x_gyro_magnetic=0.5"));
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!((diagnosis.verdict, diagnosis.effects.len()), (Verdict::UnknownEffect, 0), "{diagnosis:?}");
+    let unknown = diagnosis.unknown.expect("it is unknown");
+    assert!(unknown.correlates_with.iter().any(|shape| shape.starts_with("a field of the room")), "{unknown:?}");
+}
+
+/// Too large for one linear step: the sensor's axes must not bend to it.
+#[test]
+fn a_table_that_leans_by_degrees_is_found() {
+    let (recording, _) = recording(Scheme::Single, 10, Some("platform_tilt_change=4"));
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    let found: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!((diagnosis.verdict, found), (Verdict::EffectFound, vec!["platform_tilt_change"]));
+    let leans = diagnosis.effects[0].parameters.iter().filter(|value| value.unit == "deg").map(|value| value.value);
+    let leans = leans.map(|value| value * value).sum::<f64>().sqrt();
+    assert!((leans - 4.0).abs() < 0.1, "{leans}");
+}
+
+/// Each axis turns once: its scale is known beside that turn by the moves from face to face.
+#[test]
+fn a_turn_in_quarter_steps_may_be_incomplete() {
+    let mut config = SchemeConfig::new(Scheme::Quarter, 26);
+    config.effects = vec![Effect::parse("incomplete_turn=8").expect("a known effect")];
+    let diagnosis = ask(&made(&config).0, &[]).diagnosis;
+    let found: Vec<&str> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+    assert_eq!((diagnosis.verdict, found), (Verdict::EffectFound, vec!["incomplete_turn"]));
+}

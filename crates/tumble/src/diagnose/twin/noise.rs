@@ -120,3 +120,38 @@ fn of_mean(density: f64, walk: f64, duration_s: f64) -> f64 {
     let white = (density - walk * RECORD_S * RECORD_S / 3.0).max(LEAST_WHITE * density);
     white / duration_s - walk * duration_s / 6.0
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+
+    /// ln p of means of a walk with noise, by their covariance and by the filter: a walk far above the noise, and one far below.
+    #[test]
+    fn a_walk_s_mean_by_halves_is_exact() {
+        let (count, before) = (12, 3.0);
+        let values = DVector::from_fn(count, |i, _| (7.3 * i as f64).sin() * (1.0 + i as f64));
+        for (walk, white) in [(4.0, 0.5), (0.02, 2.0), (1.0, 1.0)] {
+            let covariance = DMatrix::from_fn(count, count, |i, j| {
+                let since = if i == j { RECORD_S / 3.0 } else { RECORD_S / 2.0 };
+                before + walk * (i.min(j) as f64 * RECORD_S + since) + if i == j { white } else { 0.0 }
+            });
+            let factor = covariance.cholesky().expect("positive");
+            let exact = -0.5 * values.dot(&factor.solve(&values)) - factor.l().diagonal().map(f64::ln).sum();
+
+            // As differences of neighbouring means show it.
+            let measured = (white + walk * RECORD_S / 3.0) * RECORD_S;
+            let (mut mean, mut variance, mut filtered) = (0.0, before, 0.0);
+            for value in values.iter() {
+                variance += 0.5 * walk * RECORD_S;
+                let innovation = variance + of_mean(measured, walk, RECORD_S);
+                filtered -= 0.5 * ((value - mean) * (value - mean) / innovation + innovation.ln());
+                mean += variance / innovation * (value - mean);
+                variance -= variance * variance / innovation;
+                variance += 0.5 * walk * RECORD_S;
+            }
+            assert!((filtered - exact).abs() < 1e-9 * exact.abs(), "{walk} {white}: {filtered} {exact}");
+        }
+    }
+}
