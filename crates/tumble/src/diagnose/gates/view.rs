@@ -51,12 +51,23 @@ pub struct View<'a> {
     pub step: [f64; 6],
 }
 
+/// Samples that batches are averaged over.
+const RUN: usize = 32;
+
+/// The median spacing; the mean one where samples come in batches (stamps by a host's arrival), whose own spacing is that of a bus. Lost
+/// samples lengthen a run by less than half as long as most are there.
+fn usual_spacing_s(t_s: &[f64]) -> f64 {
+    let spacing = |over: usize| median(t_s.windows(over + 1).map(|run| (run[over] - run[0]) / over as f64).collect());
+    let (single, run) = (spacing(1), spacing(RUN));
+    if run > 1.5 * single { spacing(t_s.len() - 1) } else { single }
+}
+
 impl<'a> View<'a> {
     /// Looks through the recording.
     pub fn new(scene: &'a Scene<'a>) -> Self {
         let rows = &scene.recording.rows;
         let t_s: Vec<f64> = scene.samples.iter().map(|raw| raw.t_s).collect();
-        let dt_s = median(t_s.windows(2).map(|pair| pair[1] - pair[0]).collect());
+        let dt_s = usual_spacing_s(&t_s);
         let channels: [Vec<f64>; 6] = std::array::from_fn(|c| rows.iter().map(|row| row.channels()[c]).collect());
         let resting = Vector3::from_fn(|c, _| median(channels[c].clone()));
         let step = std::array::from_fn(|c| step(&channels[c]));
@@ -214,4 +225,17 @@ fn step(channel: &[f64]) -> f64 {
     let usual = quantile(&mut gaps, 0.2);
     let near: Vec<f64> = gaps.into_iter().filter(|gap| (gap / usual - 1.0).abs() < 0.2).collect();
     near.iter().sum::<f64>() / near.len() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::usual_spacing_s;
+
+    #[test]
+    fn batches_have_the_spacing_of_their_samples_and_losses_do_not_lengthen_it() {
+        let batched: Vec<f64> = (0..640).map(|k| 0.32 * f64::from(k / 32) + 0.001 * f64::from(k % 32)).collect();
+        assert!((usual_spacing_s(&batched) - 0.01).abs() < 3e-4, "{}", usual_spacing_s(&batched));
+        let lossy: Vec<f64> = (0..640).filter(|k| k % 4 != 0).map(|k| 0.01 * f64::from(k)).collect();
+        assert!((usual_spacing_s(&lossy) - 0.01).abs() < 1e-9, "{}", usual_spacing_s(&lossy));
+    }
 }
