@@ -153,16 +153,6 @@ impl Noise {
         self.bias_walk = found.clamp(WALK_FLOOR, WALK_CAP);
     }
 
-    /// Has the bias been seen to wander?
-    pub fn has_bias_walk(&self) -> bool {
-        self.bias_walk > WALK_FLOOR
-    }
-
-    /// Has the accelerometer's?
-    pub fn has_force_walk(&self) -> bool {
-        self.force_walk > FORCE_WALK_FLOOR
-    }
-
     /// Likewise for the accelerometer.
     pub fn set_force_walk(&mut self, found: f32) {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);

@@ -30,27 +30,28 @@ impl<const S: usize> Walk<S> {
     pub(super) fn enter_still<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, noise: &Noise) {
         let (first, end) = (usize::from(segment.first), usize::from(segment.end));
         let force = crate::motion::segmenter::mean_force(tape, first, end);
-        if !noise::is_solid(segment, noise.quiet_variance) {
+        let solid = noise::is_solid(segment, noise.quiet_variance);
+        if !solid {
             let own = noise::scatter(tape, segment).force / noise.force_density;
             self.noise[self.pass.segment].force_scale = own.max(1.0);
         }
         let (scale, duration_s) = (self.noise[self.pass.segment].force_scale, segment.duration_s());
         let own = noise.force_density * scale / duration_s + noise.force_rounding;
         let variance = own / (self.gravity * self.gravity);
-        self.level(&self.pass.nominal.accel.compensate(&force), variance, noise);
-        if noise::is_solid(segment, noise.quiet_variance) {
-            self.compare(tape, segment, own, noise);
+        let force = self.pass.nominal.accel.compensate(&force);
+        self.level(&force, variance, noise);
+        if solid {
+            self.compare(tape, segment, force.norm() - self.gravity, own, noise);
         }
     }
 
-    /// What a rest's means say of biases that drift and wander. `own` is the mean specific force's variance.
-    fn compare<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, own: f32, noise: &Noise) {
+    /// What a rest's means say of biases that drift and wander. `excess` is the mean specific force's over gravity, `own` its variance.
+    fn compare<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, excess: f32, own: f32, noise: &Noise) {
         let (first, end, duration_s) = (usize::from(segment.first), usize::from(segment.end), segment.duration_s());
         let records = || (first..end).filter_map(|index| tape.record(index));
-        self.pass.steady = (crate::motion::segmenter::mean_rate(tape, first, end), f32::INFINITY);
-        let limit =
-            UNSTEADY_SIGMAS * libm::sqrtf(records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max));
-        self.pass.steady.1 = limit;
+        let noisiest = records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max);
+        let limit = UNSTEADY_SIGMAS * libm::sqrtf(noisiest);
+        self.pass.steady = (crate::motion::segmenter::mean_rate(tape, first, end), limit);
         let (sum, time_s) = records()
             .filter(|record| self.is_steady(record))
             .fold((Vector3::zeros(), 0.0), |(sum, time_s), record| (sum + record.rotation_rad, time_s + record.dt_s));
@@ -66,9 +67,7 @@ impl<const S: usize> Walk<S> {
         if self.pass.visit.is_none() {
             self.pass.force_walk.restart();
         }
-        let force = crate::motion::segmenter::mean_force(tape, first, end);
-        let left = self.pass.nominal.accel.compensate(&force).norm() - self.gravity;
-        self.pass.force_walk.take(&[left], own, t_s);
+        self.pass.force_walk.take(&[excess], own, t_s);
     }
 
     /// Does a record show the rest's own rate? A hand's last touch may be slower than what ends a rest.
