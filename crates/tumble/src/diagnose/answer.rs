@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use tumble_core::estimate::Conditions;
 use tumble_core::procedure::BoxFaces;
 
-use super::diagnosis::{Diagnosis, FitReport, Found, Unknown, Verdict};
+use super::diagnosis::{Diagnosis, Found, Unknown, Verdict};
 use super::exhibits::{self, once};
 use super::findings::{self, Finding};
 use super::gates::Gated;
@@ -46,30 +46,17 @@ pub fn assemble(
     let reasons = reasons(bench, &judged, poses, conditions);
     let unknown = judged.unknown.then(|| unknown(bench, selection, leftover, judged, &effects, origin_s));
     let fit = findings::fit_report(bench, selection);
-    Diagnosis {
-        format: "tumble-diagnosis",
-        version: 1,
-        verdict,
-        effects,
-        unknown,
-        fit,
-        detection_limits: limits,
-        reasons,
-    }
+    Diagnosis { effects, unknown, fit, detection_limits: limits, reasons, ..Diagnosis::new(verdict) }
 }
 
 /// What gates found stands alone where nothing could be fitted.
 pub fn without_physics(gated: &Gated, why: String) -> Outcome {
     let verdict = if gated.found.is_empty() { Verdict::NotTestable } else { Verdict::EffectFound };
     let diagnosis = Diagnosis {
-        format: "tumble-diagnosis",
-        version: 1,
-        verdict,
         effects: gated.found.clone(),
-        unknown: None,
-        fit: FitReport::default(),
         detection_limits: gated.limits.clone(),
         reasons: vec![why],
+        ..Diagnosis::new(verdict)
     };
     Outcome { diagnosis, exhibits: None }
 }

@@ -62,6 +62,22 @@ pub struct Diagnosis {
     pub reasons: Vec<String>,
 }
 
+impl Diagnosis {
+    /// A verdict, and nothing else yet.
+    pub fn new(verdict: Verdict) -> Self {
+        Self {
+            format: "tumble-diagnosis",
+            version: 1,
+            verdict,
+            effects: Vec::new(),
+            unknown: None,
+            fit: FitReport::default(),
+            detection_limits: Vec::new(),
+            reasons: Vec::new(),
+        }
+    }
+}
+
 /// An effect.
 #[derive(Clone, Debug, Serialize)]
 pub struct Found {

@@ -62,6 +62,11 @@ impl Judged {
         self.better.extend(shapes);
     }
 
+    /// Likewise where these shapes are what explains it.
+    fn yield_to(&mut self, bench: &Bench, shapes: &Leftover) {
+        self.nameless(shapes.p_value(), exhibits::correlates(bench, shapes));
+    }
+
     /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
     /// odds that no trace would reach; a bias that wanders is none.
     pub fn beside_gates(&mut self) {
@@ -95,7 +100,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let weak = finding.is_walk || shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
         if let Some(shape) = shapes.rival(selection.evidence, TIE) {
-            judged.nameless(shape.p_value(), exhibits::correlates(bench, shape));
+            judged.yield_to(bench, shape);
             judged.demoted.push(finding);
         } else if leftover.is_real() && weak {
             judged.demoted.push(finding);
@@ -123,7 +128,7 @@ fn drop_names(bench: &mut Bench, selection: &Selection, judged: &mut Judged, dro
     let (places, findings): (Vec<usize>, Vec<Finding>) = dropped.into_iter().unzip();
     let shapes = shapes_instead(bench, selection, &places);
     if shapes.best().is_real() {
-        judged.nameless(shapes.best().p_value(), exhibits::correlates(bench, shapes.best()));
+        judged.yield_to(bench, shapes.best());
         judged.demoted.extend(findings);
     } else {
         judged.dropped.extend(findings.into_iter().map(|finding| finding.found.id));
@@ -144,7 +149,7 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     let shapes = shapes_instead(bench, selection, &shifts);
     let coincidence = (shifts.len() - 1) as f64 * (bench.candidates.len() as f64).ln();
     if let Some(shape) = shapes.rival(selection.evidence, TIE + coincidence) {
-        judged.nameless(shape.p_value(), exhibits::correlates(bench, shape));
+        judged.yield_to(bench, shape);
         judged.demote(|finding| !finding.is_walk);
     }
 }

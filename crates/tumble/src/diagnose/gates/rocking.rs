@@ -3,8 +3,8 @@
 //! Statistic: at frequencies from 0.3 to 4 Hz, a sine fitted to every rest of at least one period; the gyroscope's power across gravity
 //! (a table leans about level axes), mean over R rests, against white noise p, the median over all frequencies up to 8 Hz, and 1/f
 //! noise with a corner of 0.6 Hz: p·(1 + 0.6/f), ten times what healthy biases have (10 °/h). That is χ² of 4R over its mean,
-//! its tail Chernoff's over all frequencies, at e⁻¹¹·⁵. Then it must be a table's: at 0.6 Hz off (or what rests resolve) it has fallen to a third,
-//! and either
+//! its tail Chernoff's over all frequencies, at e⁻¹¹·⁵. Then it must be a table's: at 0.6 Hz off (or what rests resolve) it has
+//! fallen to a third, and either
 //!
 //! - the accelerometer confirms it: a lean θ = ω/(2πif) about a level axis h, h metres up, shows as (g + h(2πf)²)·θ across it. Direction,
 //!   phase and frequency are the gyroscope's, so one number c is left, fitted to all rests, 1 for a pivot at the sensor: it

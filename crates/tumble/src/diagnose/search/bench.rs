@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 
 use super::generic::{Family, families};
-use super::ledger::{Fit, Ledger, Term, log_mean};
+use super::ledger::{Fit, Ledger, Term, by_place, log_mean};
 use crate::diagnose::catalogue::{AtSize, Effect, Model, Parameter, STRUCTURAL};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::column::Column;
@@ -169,19 +169,20 @@ impl Bench {
 
     /// Is this triad's bias accepted as one that wanders?
     pub fn wanders(&self, gyro: bool) -> bool {
-        self.accepted.iter().any(|accepted| self.candidate(accepted).walk.is_some_and(|walk| walk.0 == gyro))
+        self.wanders_but(gyro, &[])
+    }
+
+    fn wanders_but(&self, gyro: bool, but: &[usize]) -> bool {
+        let is_walk = |accepted: &Accepted| self.candidate(accepted).walk.is_some_and(|walk| walk.0 == gyro);
+        self.accepted.iter().enumerate().any(|(k, accepted)| !but.contains(&k) && is_walk(accepted))
     }
 
     /// Where a bias is accepted as wandering, but for those in `but`, it does so as found.
     #[must_use]
     pub fn with_accepted_walks(&self, noise: &Noise, but: &[usize]) -> Noise {
-        let found = [true, false].map(|gyro| {
-            let mut others = (0..self.accepted.len()).filter(|k| !but.contains(k));
-            others.any(|k| self.candidate(&self.accepted[k]).walk.is_some_and(|walk| walk.0 == gyro))
-        });
         Noise {
-            bias_walk: if found[0] { self.wander.0 } else { noise.bias_walk },
-            force_walk: if found[1] { self.wander.1 } else { noise.force_walk },
+            bias_walk: if self.wanders_but(true, but) { self.wander.0 } else { noise.bias_walk },
+            force_walk: if self.wanders_but(false, but) { self.wander.1 } else { noise.force_walk },
             ..*noise
         }
     }
@@ -247,7 +248,7 @@ impl Bench {
             .filter(|term| self.columns[term.column].influence.reading().is_none())
             .collect();
         let chosen: Vec<usize> = terms.iter().map(|term| term.column).collect();
-        let local: Vec<Term> = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
+        let local = by_place(&terms);
         let sizes = |rows: &Rows| Ledger::new(rows, |_| true).fit(&local).theta.iter().copied().collect();
         self.twin.fit_beside(&mut self.columns, &chosen, sizes);
         self.columns.iter_mut().for_each(Column::forget);
@@ -321,8 +322,7 @@ impl Bench {
     pub fn ledger_of(&mut self, terms: &[Term]) -> (Ledger, Vec<Term>) {
         let columns: Vec<usize> = terms.iter().map(|term| term.column).collect();
         let rows = self.rows_of(&columns);
-        let local = terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect();
-        (Ledger::new(&rows, |_| true), local)
+        (Ledger::new(&rows, |_| true), by_place(terms))
     }
 
     /// Rows that carry these columns alone, in this order, under the noise in force.

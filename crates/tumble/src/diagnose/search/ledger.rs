@@ -28,6 +28,11 @@ struct Share {
     moments: DVector<f64>,
 }
 
+/// The same terms over rows that carry their columns alone, in this order.
+pub fn by_place(terms: &[Term]) -> Vec<Term> {
+    terms.iter().enumerate().map(|(column, term)| Term { column, ..*term }).collect()
+}
+
 /// Products of rows and responses, class by class.
 pub struct Ledger {
     classes: [Share; CLASSES],

@@ -9,7 +9,7 @@ use nalgebra::DVector;
 
 use super::bench::Bench;
 use super::generic::Family;
-use super::ledger::{Fit, Ledger, Term, log_mean};
+use super::ledger::{Fit, Ledger, Term, by_place, log_mean};
 use super::null::FALSE_ALARMS;
 use crate::diagnose::twin::rows::Rows;
 
@@ -198,7 +198,7 @@ impl Given {
         columns.extend(bench.candidate_columns()..bench.columns.len());
         let rows = bench.rows_of(&columns);
         let ledger = Ledger::new(&rows, |_| true);
-        terms.iter_mut().enumerate().for_each(|(k, term)| term.column = k);
+        let terms = by_place(&terms);
         let whole = ledger.fit(&terms);
         (Self { ledger, replaced: terms.len() - accepted, terms, whole }, rows)
     }
