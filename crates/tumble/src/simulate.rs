@@ -70,7 +70,7 @@ pub struct Made {
 pub enum PlanError {
     /// No such imperfection.
     #[error(
-        "'{0}' is no imperfection: bias_drift, clock, wobble, lever, crooked_box, temperature_ramp, tilt, by_hand or all, \
+        "'{0}' is no imperfection: bias_drift, clock, wobble, lever, crooked_box, temperature_ramp, tilt, by_hand, slide or all, \
          with =SIZE if the usual size is not meant"
     )]
     Imperfection(String),

@@ -31,6 +31,8 @@ pub(super) struct Plan {
     pub(super) put_down: bool,
 }
 
+/// A box that is turned by hand is pushed about as slowly as this, Hz.
+const SLIDE_HZ: (f64, f64) = (0.05, 0.5);
 /// Shortest move that still has room for its edges, s.
 const SHORTEST_S: f64 = 0.8;
 
@@ -73,7 +75,7 @@ impl Planner<'_> {
     }
 
     /// The stop's error is the difference of two stops' offsets from the mark.
-    fn turn(self, wanted_rad: f64, duration_s: f64) -> Plan {
+    fn turn(mut self, wanted_rad: f64, duration_s: f64) -> Plan {
         let hands = *self.hands();
         let offset_rad = hands.stops.draw(self.rng);
         let angle_rad = wanted_rad + offset_rad - self.standing.offset_rad;
@@ -91,6 +93,8 @@ impl Planner<'_> {
             wobble_rad: hands.wobble_deg.to_radians(),
             wobble_phases: [self.rng.phase(), self.rng.phase()],
             tremor: Tremor::on_table(&hands, normal_n, self.rng),
+            // Drawn last, and only if there is any: no other motion changes with it.
+            slide: self.slide(hands.slide_m),
         };
         let turned = UnitQuaternion::from_axis_angle(&Unit::new_normalize(axis_b), angle_rad);
         Plan {
@@ -100,6 +104,10 @@ impl Planner<'_> {
             duration_s,
             put_down: false,
         }
+    }
+
+    fn slide(&mut self, size_m: f64) -> Option<[Tones; 2]> {
+        (size_m > 0.0).then(|| core::array::from_fn(|_| Tones::band(SLIDE_HZ.0, SLIDE_HZ.1, size_m, self.rng)))
     }
 
     fn reorient(mut self, up: Face, mark_rad: f64, duration_s: f64) -> Plan {

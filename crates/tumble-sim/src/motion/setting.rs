@@ -135,6 +135,8 @@ pub struct Hands {
     pub overshoot_deg: f64,
     /// Amplitude of the spin axis's wobble during a turn, degrees.
     pub wobble_deg: f64,
+    /// How far the box slides about on the table in a turn, rms along each of two directions, m.
+    pub slide_m: f64,
     /// Where turns end.
     pub stops: Stops,
     /// How far from its home the box is put down, m.
@@ -154,6 +156,7 @@ impl Hands {
             turn_ramp: 0.15,
             overshoot_deg: 0.0,
             wobble_deg: 0.0,
+            slide_m: 0.0,
             stops: Stops::FENCE,
             scatter_m: 0.02,
             knock_mps2: 1.0,
@@ -210,6 +213,7 @@ impl MotionConfig {
         SimError::check("azimuth_deg", self.table.azimuth_deg, |_| true, "finite")?;
         SimError::check("lever_b_m", self.shape.lever_b_m.norm(), |v| v < 1.0, "below 1 m")?;
         SimError::check("wobble_deg", hands.wobble_deg, |v| v.abs() < 20.0, "below 20 degrees")?;
+        SimError::check("slide_m", hands.slide_m, |v| (0.0..0.5).contains(&v), "0 to 50 cm")?;
         SimError::check("speed_wander", hands.speed_wander, |v| (0.0..=0.5).contains(&v), "between 0 and 0.5")?;
         SimError::check("tremor_angle_deg", hands.tremor_angle_deg, |v| (0.0..5.0).contains(&v), "0 to 5 degrees")?;
         SimError::check("tremor_position_m", hands.tremor_position_m, |v| (0.0..0.01).contains(&v), "0 to 1 cm")?;

@@ -53,6 +53,8 @@ pub(super) struct Turn {
     pub(super) wander: Tones,
     pub(super) wobble_rad: f64,
     pub(super) wobble_phases: [f64; 2],
+    /// Along two directions in the plate; none if it turns on the spot.
+    pub(super) slide: Option<[Tones; 2]>,
     pub(super) tremor: Tremor,
 }
 
@@ -62,9 +64,22 @@ impl Turn {
         let angle = self.angle(t_s, whole_s);
         let turned = Spin::fixed(from.rotation_n_from_b).then(Spin::about(&self.axis_b, angle));
         let mut path = Path::fixed(from.position_n_m);
+        if let Some(slide) = &self.slide {
+            let size = window(t_s, 0.0, whole_s, 0.25 * whole_s);
+            for (along, tones) in self.plate().iter().zip(slide) {
+                path += Path::along(along, tones.at(t_s) * size);
+            }
+        }
         let grip = window(t_s, 0.0, whole_s, GRASP_S);
         let spin = self.tremor.shake(t_s, grip, self.wobble(t_s, whole_s, angle).then(turned), &mut path);
         (spin, path)
+    }
+
+    /// East and north within the plate.
+    fn plate(&self) -> [Vector3<f64>; 2] {
+        let x = Vector3::x();
+        let east = (x - self.normal_n * self.normal_n.dot(&x)).normalize();
+        [east, self.normal_n.cross(&east)]
     }
 
     /// The turn's angle: a cruise at a wandering speed, a little too far, and back.
@@ -85,13 +100,12 @@ impl Turn {
         if self.wobble_rad == 0.0 {
             return Spin::fixed(nalgebra::UnitQuaternion::identity());
         }
-        let across = |v: Vector3<f64>| (v - self.normal_n * self.normal_n.dot(&v)).normalize();
-        let east = across(Vector3::x());
+        let [east, north] = self.plate();
         let size = window(t_s, 0.0, whole_s, 0.2 * whole_s) * self.wobble_rad;
         let [once, twice] = self.wobble_phases;
         let (once, twice) = (angle + Jet::constant(once), angle * 2.0 + Jet::constant(twice));
         let lean = |f: fn(Jet) -> Jet| size * (f(once) + f(twice) * (1.0 / 3.0));
-        Spin::about(&east, lean(Jet::cos)).then(Spin::about(&self.normal_n.cross(&east), lean(Jet::sin)))
+        Spin::about(&east, lean(Jet::cos)).then(Spin::about(&north, lean(Jet::sin)))
     }
 }
 

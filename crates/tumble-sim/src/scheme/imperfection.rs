@@ -25,6 +25,8 @@ pub enum Imperfection {
     Tilt(f64),
     /// Turns close by hand with this 1σ, degrees, with overshoot.
     ByHand(f64),
+    /// The box slides about in its turns by this rms, m.
+    Slide(f64),
     /// Turns end against a fence, each stop uniform within this of it, degrees.
     Fence(f64),
 }
@@ -42,7 +44,8 @@ impl Imperfection {
     ];
 
     /// Of its word, with its usual size if none is given: `bias_drift` (°/s), `clock` (fraction), `wobble` (°), `lever` (m),
-    /// `crooked_box` (°), `temperature_ramp` (°C), `tilt` (°), `by_hand` (°), `fence` (°).
+    /// `crooked_box` (°), `temperature_ramp` (°C), `tilt` (°), `by_hand` (°), `slide` (m),
+    /// `fence` (°).
     pub fn parse(word: &str, size: Option<f64>) -> Option<Self> {
         let or = |usual: f64| size.unwrap_or(usual);
         Some(match word {
@@ -54,6 +57,7 @@ impl Imperfection {
             "temperature_ramp" => Self::TemperatureRamp(or(1.0)),
             "tilt" => Self::Tilt(or(3.0)),
             "by_hand" => Self::ByHand(or(2.0)),
+            "slide" => Self::Slide(or(0.01)),
             "fence" => Self::Fence(or(0.1)),
             _ => return None,
         })
@@ -87,6 +91,7 @@ impl SchemeConfig {
                     Thermal { warm_up_degc: 0.0, ramp_degc_per_s: degc / duration_s, ..coefficients };
             }
             Imperfection::Tilt(deg) => motion.table.tilt_deg = deg,
+            Imperfection::Slide(metres) => motion.hands.slide_m = metres,
             Imperfection::Fence(half_width_deg) => {
                 motion.hands.stops = crate::motion::Stops::Fenced { half_width_deg };
             }

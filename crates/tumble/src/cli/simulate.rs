@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DEG")]
     wobble_deg: Option<f64>,
     /// Further imperfection with its size, or all of them: bias_drift (°/s), clock (fraction), wobble (°), lever (m),
-    /// crooked_box (°), temperature_ramp (°C), tilt (°), by_hand (°), all
+    /// crooked_box (°), temperature_ramp (°C), tilt (°), by_hand (°), slide (m), all
     #[arg(long = "imperfection", value_name = "NAME[=SIZE]")]
     imperfections: Vec<String>,
     /// Round to the sensor's counts and clip at the ends of its ranges

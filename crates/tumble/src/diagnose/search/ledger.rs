@@ -105,15 +105,21 @@ impl Ledger {
         self
     }
 
-    /// A fit's scales where a class scatters more than chance would have it (four sigma of `2/N`), else 1.
+    /// A fit's scales where a class scatters more than chance would have it, else 1.
     pub fn certain(&self, fit: &Fit) -> [f64; CLASSES] {
         let mut scales = fit.scales;
-        for (scale, class) in scales.iter_mut().zip(&self.classes) {
-            if *scale < 1.0 + 4.0 * (2.0 / class.count.max(1.0)).sqrt() {
+        for (scale, class) in scales.iter_mut().zip(Class::ALL) {
+            if !self.is_exceeded(fit, class) {
                 *scale = 1.0;
             }
         }
         scales
+    }
+
+    /// Does a class scatter more than chance would have it: by four sigma of `2/N`?
+    pub fn is_exceeded(&self, fit: &Fit, class: Class) -> bool {
+        let mut all = Class::ALL.iter().zip(&fit.scales).zip(&self.classes);
+        all.any(|((one, scale), share)| *one == class && *scale >= 1.0 + 4.0 * (2.0 / share.count.max(1.0)).sqrt())
     }
 
     /// The model of these terms; an empty one is the null.

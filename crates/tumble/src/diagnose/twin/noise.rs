@@ -33,7 +33,13 @@ pub struct Noise {
     pub facet_sigma_rad: Option<f64>,
     /// How far a turn's axis is from where other turns have it, m.
     pub pivot_sigma_m: f64,
+    /// How a hand pushes the box about in a turn: its horizontal acceleration over gravity, 1. A Gauss–Markov process of time constant
+    /// [`SLIDE_S`] in frame n; none unless the turns show it.
+    pub slide_rad: f64,
 }
+
+/// A hand that turns a box gives it another push about as often, s.
+pub const SLIDE_S: f64 = 1.0;
 
 /// Least wander that is taken for granted: 1 mdps and 10 µg in 100 s.
 pub const BIAS_WALK_FLOOR: f64 = 3.046e-12;
@@ -88,6 +94,7 @@ impl Noise {
             },
             facet_sigma_rad: self.facet_sigma_rad.map(|sigma| sigma.min(SQUARE_RAD)),
             motion_scale: 1.0,
+            slide_rad: 0.0,
             ..*self
         }
     }
@@ -106,6 +113,7 @@ impl Noise {
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
             pivot_sigma_m: PIVOT_SIGMA_M,
+            slide_rad: 0.0,
         }
     }
 }

@@ -24,8 +24,10 @@ pub const TABLE: usize = 36;
 pub const FACET: usize = 38;
 /// Heading error at a visit's first stop, rad.
 pub const FENCE: usize = 40;
+/// The box's own horizontal acceleration in a turn, frame n, as the tilt that it looks like, rad.
+pub const SLIDE: usize = 41;
 /// All.
-pub const STATES: usize = 41;
+pub const STATES: usize = 43;
 /// States that drive φ: δM, δb, Ω, which stand in a row.
 pub const DRIVERS: usize = 15;
 
@@ -146,6 +148,17 @@ impl State {
     /// `count` states from `first` wander.
     pub fn wander(&mut self, first: usize, count: usize, variance: f64) {
         (first..first + count).for_each(|index| self.covariance[(index, index)] += variance);
+    }
+
+    /// `count` states from `first` decay by `factor` and gain `variance`: a step of a Gauss–Markov process.
+    pub fn fade(&mut self, first: usize, count: usize, factor: f64, variance: f64) {
+        for index in first..first + count {
+            self.covariance.row_mut(index).scale_mut(factor);
+            self.covariance.column_mut(index).scale_mut(factor);
+            self.covariance[(index, index)] += variance;
+            self.mean[index] *= factor;
+            self.columns.iter_mut().for_each(|column| column[index] *= factor);
+        }
     }
 
     /// The mean with candidates of these sizes there.

@@ -122,6 +122,7 @@ impl<'a> Walk<'a> {
         }
         if turn {
             self.state.reset(state::PIVOT, 3, self.pass.noise.pivot_sigma_m);
+            self.state.reset(state::SLIDE, 2, self.pass.noise.slide_rad);
         }
         for index in steps {
             let step = &self.pass.steps.all[index];
@@ -131,6 +132,17 @@ impl<'a> Walk<'a> {
             }
             self.propagate(index, step);
             self.wander(step.end_s, self.pass.noise.walk_in_motion);
+            if turn {
+                self.slide(step.duration_s);
+            }
+        }
+    }
+
+    fn slide(&mut self, duration_s: f64) {
+        let sigma = self.pass.noise.slide_rad;
+        if sigma > 0.0 {
+            let factor = (-duration_s / noise::SLIDE_S).exp();
+            self.state.fade(state::SLIDE, 2, factor, (1.0 - factor * factor) * sigma * sigma);
         }
     }
 
@@ -193,7 +205,8 @@ impl<'a> Walk<'a> {
             if turning {
                 observation = observation
                     .with(state::LEVER, step.lever.row(axis).iter().copied())
-                    .with(state::PIVOT, step.lever.row(axis).iter().copied());
+                    .with(state::PIVOT, step.lever.row(axis).iter().copied())
+                    .with(state::SLIDE, [step.tilt[(axis, 0)], step.tilt[(axis, 1)]]);
             }
             let push = |c: usize| match columns[c].influence {
                 Influence::Lever(along, unit) if turning => unit * step.lever[(axis, along)],
