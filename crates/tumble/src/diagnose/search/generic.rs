@@ -41,6 +41,7 @@ pub fn families(twin: &Twin) -> Vec<Family> {
         ("size of the rate", |_, _| sizes()),
         ("angular acceleration", |_, _| vector("dw/dt", |moment| moment.acceleration)),
         ("force times rate", |_, _| mixed()),
+        ("force times the rate's size", |_, _| vector("|w|*f", |moment| moment.force * (moment.rate.norm() / G))),
         ("time", trends),
         ("slow oscillation", |end_s, _| oscillations(end_s)),
         ("time since the last motion", |_, _| after_motion()),
