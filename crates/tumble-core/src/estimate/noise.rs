@@ -257,3 +257,6 @@ fn pooled<const S: usize>(values: &mut Vec<(f32, f32), S>) -> Option<f32> {
     }
     (weight > 0.0).then(|| sum / weight)
 }
+
+#[cfg(test)]
+mod tests;
