@@ -13,6 +13,7 @@ pub mod model;
 pub mod noise;
 pub mod normal;
 pub mod prior;
+pub mod scatter;
 pub mod six_face;
 pub mod start;
 pub mod state;

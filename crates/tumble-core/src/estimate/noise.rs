@@ -5,10 +5,10 @@ use nalgebra::Vector3;
 
 use super::drift::Slope;
 use super::facets::SQUARE;
+use super::scatter::{pooled, scatter};
 use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
 use crate::motion::grain::SOLID;
-use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Kind, Segment, Tape};
 
@@ -214,48 +214,6 @@ fn quietest<const R: usize, const S: usize>(tape: &Tape<R, S>) -> f32 {
 /// A rest on something solid, as against one in the hand.
 pub fn is_solid(segment: &Segment, quiet_variance: f32) -> bool {
     matches!(segment.kind, Kind::Still { rate_variance, .. } if rate_variance <= SOLID * quiet_variance)
-}
-
-/// Densities of one still, from the differences of neighbouring half-second means.
-pub struct Scatter {
-    /// rad²/s.
-    pub rate: f32,
-    /// (m/s²)² s.
-    pub force: f32,
-    /// Differences it stands on, over three axes.
-    pub count: f32,
-}
-
-/// A difference of two means of independent noise has twice the variance of one, slow drifts cancel.
-pub fn scatter<const R: usize, const S: usize>(tape: &Tape<R, S>, segment: &Segment) -> Scatter {
-    let mut result = Scatter { rate: 0.0, force: 0.0, count: 0.0 };
-    for index in usize::from(segment.first)..usize::from(segment.end).saturating_sub(1) {
-        let (Some(a), Some(b)) = (tape.record(index), tape.record(index + 1)) else { continue };
-        let harmonic = 1.0 / (1.0 / a.dt_s + 1.0 / b.dt_s);
-        let rate = a.rotation_rad / a.dt_s - b.rotation_rad / b.dt_s;
-        let force = a.specific_force_mps2 - b.specific_force_mps2;
-        result.rate += rate.norm_squared() * harmonic;
-        result.force += force.norm_squared() * harmonic;
-        result.count += 3.0;
-    }
-    if result.count > 0.0 {
-        result.rate /= result.count;
-        result.force /= result.count;
-    }
-    result
-}
-
-/// Mean weighted by counts, without values above four times the median: a disturbed rest does not make all noisy.
-fn pooled<const S: usize>(values: &mut Vec<(f32, f32), S>) -> Option<f32> {
-    values.retain(|value| value.1 > 0.0 && value.0.is_finite());
-    let mut sorted: Vec<f32, S> = values.iter().map(|value| value.0).collect();
-    let median = median(&mut sorted)?;
-    let (mut sum, mut weight) = (0.0, 0.0);
-    for &(value, count) in values.iter().filter(|value| value.0 <= 4.0 * median) {
-        sum += value * count;
-        weight += count;
-    }
-    (weight > 0.0).then(|| sum / weight)
 }
 
 #[cfg(test)]

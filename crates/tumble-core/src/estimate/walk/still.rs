@@ -7,6 +7,7 @@ use super::pass::Visit;
 use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
 use crate::estimate::noise::{self, Noise, ROUNDED};
+use crate::estimate::scatter::scatter;
 use crate::estimate::state::Block;
 use crate::face::Face;
 use crate::motion::path::WHOLE_TURN;
@@ -32,7 +33,7 @@ impl<const S: usize> Walk<S> {
         let force = crate::motion::segmenter::mean_force(tape, first, end);
         let solid = noise::is_solid(segment, noise.quiet_variance);
         if !solid {
-            let own = noise::scatter(tape, segment).force / noise.force_density;
+            let own = scatter(tape, segment).force / noise.force_density;
             self.noise[self.pass.segment].force_scale = own.max(1.0);
         }
         let (scale, duration_s) = (self.noise[self.pass.segment].force_scale, segment.duration_s());
