@@ -169,8 +169,8 @@ pub fn in_moves(rate_hz: f64, evidence: f64, instead: Vec<String>, place: Place)
     found
 }
 
-/// Resting rate before a sample, °/s.
+/// Resting rate nearest to a sample, °/s; where no rest is long enough to tell, what the axes read most of the time.
 pub fn nearest_rest(view: &View, index: usize) -> Vector3<f64> {
     let distance = |rest: &&super::view::Rest| rest.samples.start.abs_diff(index).min(rest.samples.end.abs_diff(index));
-    view.rests.iter().min_by_key(distance).map_or_else(Vector3::zeros, |rest| rest.rate)
+    view.rests.iter().min_by_key(distance).map_or(view.resting, |rest| rest.rate)
 }
