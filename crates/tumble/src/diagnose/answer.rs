@@ -31,7 +31,8 @@ pub fn assemble(
     conditions: Conditions,
     origin_s: f64,
 ) -> Diagnosis {
-    let limits = limits::one_each(limits::limits(bench, selection).into_iter().chain(gated.limits));
+    let limits =
+        limits::one_each(limits::limits(bench, selection, judged.beside_gates).into_iter().chain(gated.limits));
     let effects = merged(gated.found, std::mem::take(&mut judged.named));
     let poses = poses(&bench.twin);
     let verdict = if judged.unknown {
@@ -110,11 +111,15 @@ fn reasons(bench: &Bench, judged: &Judged, poses: usize, conditions: Conditions)
         ));
     }
     if judged.traces {
-        reasons.push(
-            "More is left over than noise explains. What was found in the samples themselves leaves such traces; record \
-             again without it before looking further."
-                .into(),
-        );
+        let resembles = if judged.faint.is_empty() {
+            String::new()
+        } else {
+            format!(" It resembles {}, but no more than traces may.", once(judged.faint.iter().cloned()).join(", "))
+        };
+        reasons.push(format!(
+            "More is left over than noise explains. What was found in the samples themselves leaves such traces; record again without it \
+             before looking further.{resembles}"
+        ));
     }
     reasons.extend(
         judged.dropped.iter().map(|id| {

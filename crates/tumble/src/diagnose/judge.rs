@@ -14,7 +14,7 @@ use super::search::unknown::{self, Leftover};
 use super::search::wandering;
 
 /// ln of the odds that a name needs beside a distortion of the samples: 5e8 to 1.
-const BESIDE_GATES: f64 = 20.0;
+pub const BESIDE_GATES: f64 = 20.0;
 
 /// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
 const BEYOND_UNKNOWN: f64 = 0.5;
@@ -29,8 +29,12 @@ pub struct Judged {
     pub unknown: bool,
     /// What improves only on the data it was fitted to.
     pub dropped: Vec<String>,
-    /// Is something left that a distortion of the samples accounts for?
+    /// Do distortions of the samples leave traces that names have to stand clear of?
+    pub beside_gates: bool,
+    /// Is something left that such a distortion accounts for?
     pub traces: bool,
+    /// Names that do not stand clear of it.
+    pub faint: Vec<String>,
     /// Shapes that explain better than a name did.
     pub better: Vec<(String, f64)>,
     /// Largest probability of as much by chance.
@@ -44,7 +48,9 @@ impl Judged {
             demoted: Vec::new(),
             unknown: leftover.is_real(),
             dropped: Vec::new(),
+            beside_gates: false,
             traces: false,
+            faint: Vec::new(),
             better: Vec::new(),
             p_value: leftover.p_value(),
         }
@@ -69,14 +75,13 @@ impl Judged {
 
     /// What distorts the samples themselves leaves traces in every fit. Beside it nothing is called unknown, and a name needs
     /// odds that no trace would reach; a bias that wanders is none.
-    pub fn beside_gates(&mut self) {
-        if self.unknown {
-            self.traces = true;
-        }
+    pub fn stand_beside_gates(&mut self) {
+        self.beside_gates = true;
+        let is_faint = |finding: &mut Finding| finding.found.evidence <= BESIDE_GATES || finding.is_walk;
+        let faint = self.named.extract_if(.., is_faint).chain(self.demoted.drain(..));
+        self.faint.extend(faint.map(|finding| finding.found.id));
+        self.traces = self.unknown || !self.faint.is_empty();
         self.unknown = false;
-        let before = self.named.len();
-        self.named.retain(|finding| finding.found.evidence > BESIDE_GATES && !finding.is_walk);
-        self.traces |= self.named.len() < before;
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::diagnosis::Limit;
 use super::gates::chance::shift_seen;
+use super::judge::BESIDE_GATES;
 use super::search::bench::{Bench, Candidate, HEALTHY, with_walks};
 use super::search::ledger::Ledger;
 use super::search::select::Selection;
@@ -14,14 +15,18 @@ use super::twin::noise::walk_floor;
 /// The noise is the most that a healthy sensor may have: the null is free to excuse an effect as wander, up to 10 mdps and
 /// 100 µg in 100 s, so that what it can excuse is no evidence. (At the noise of a quiet recording, limits of what is slow came
 /// out at half of what was found in truth.)
-pub fn limits(bench: &mut Bench, selection: &Selection) -> Vec<Limit> {
+///
+/// `beside_gates`: names need the odds that no trace of a distorted sample reaches, and no walk is named.
+pub fn limits(bench: &mut Bench, selection: &Selection, beside_gates: bool) -> Vec<Limit> {
     let kept = bench.twin.noise;
     let most = HEALTHY[HEALTHY.len() - 1];
     let rows = bench.rows(with_walks(&selection.null_noise, most, most));
     bench.twin.noise = kept;
     let ledger = Ledger::new(&rows, |_| true);
     let bench = &*bench;
-    (0..bench.candidates.len()).map(|candidate| limit(bench, selection, &ledger, candidate)).collect()
+    let needed = if beside_gates { selection.threshold.max(BESIDE_GATES) } else { selection.threshold };
+    let asked = Asked { scales: &selection.null_scales, needed, beside_gates };
+    bench.candidates.iter().map(|candidate| limit(candidate, &asked, &ledger)).collect()
 }
 
 /// One an effect, where a gate and the twin can both show it: the finer.
@@ -37,8 +42,15 @@ pub fn one_each(limits: impl Iterator<Item = Limit>) -> Vec<Limit> {
     each
 }
 
-fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) -> Limit {
-    let candidate = &bench.candidates[index];
+/// What a name has to show.
+struct Asked<'a> {
+    scales: &'a [f64; 6],
+    /// ln of the odds.
+    needed: f64,
+    beside_gates: bool,
+}
+
+fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
     let id = candidate.effect.card.id.to_string();
     let none = |why: &str, unit: &str| Limit {
         id: id.clone(),
@@ -51,12 +63,15 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
         return none(why, "");
     }
     if let Some((gyro, unit_si, unit)) = candidate.walk {
+        if asked.beside_gates {
+            return none("what distorts the samples leaves traces that wander as well", unit);
+        }
         // What is more than healthy by the first level that counts.
         let limit = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
     }
     // The median over parameters and variants.
-    let mut limits = limits_alone(candidate, selection, ledger);
+    let mut limits = limits_alone(candidate, asked, ledger);
     limits.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(&(limit, width, unit)) = limits.get(limits.len() / 2) else {
         return none("nothing in this recording depends on it", "");
@@ -71,18 +86,18 @@ fn limit(bench: &Bench, selection: &Selection, ledger: &Ledger, index: usize) ->
 }
 
 /// Of each parameter of each variant alone, the others zero, at the price of them all: limit, prior width and unit.
-fn limits_alone(candidate: &Candidate, selection: &Selection, ledger: &Ledger) -> Vec<(f64, f64, &'static str)> {
+fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f64, f64, &'static str)> {
     let mut limits = Vec::new();
     for placed in &candidate.variants {
         let columns: Vec<usize> = placed.columns.clone().collect();
-        let information = ledger.gram(&selection.null_scales, &columns, &columns);
+        let information = ledger.gram(asked.scales, &columns, &columns);
         let widths = DVector::from_fn(columns.len(), |i, _| placed.parameters[i].width);
         let prior = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
             information[(i, j)] * widths[i] * widths[j] + if i == j { 1.0 } else { 0.0 }
         });
         let Some(factor) = prior.cholesky() else { continue };
         let occam: f64 = factor.l_dirty().diagonal().iter().map(|v| v.ln()).sum();
-        let price = selection.threshold + occam + (candidate.variants.len() as f64).ln();
+        let price = asked.needed + occam + (candidate.variants.len() as f64).ln();
         for (i, parameter) in placed.parameters.iter().enumerate().filter(|(i, _)| information[(*i, *i)] > 0.0) {
             let sigmas = shift_seen(2.0 * price, columns.len() as f64).sqrt();
             limits.push((sigmas / information[(i, i)].sqrt(), parameter.width, parameter.unit));

@@ -64,7 +64,7 @@ fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut 
     let found = findings::findings(&mut bench, &selection, origin_s);
     let mut judged = judge(&mut bench, &selection, &leftover, found);
     if gated.found.iter().any(|found| !HARMLESS.contains(&found.id.as_str())) {
-        judged.beside_gates();
+        judged.stand_beside_gates();
     }
     progress("report", 0.95);
     let exhibits = exhibits::exhibits(&bench, &selection, &judged.named, &leftover, origin_s);
