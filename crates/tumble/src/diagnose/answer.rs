@@ -111,15 +111,15 @@ fn reasons(bench: &Bench, judged: &Judged, poses: usize, conditions: Conditions)
         ));
     }
     if judged.traces {
-        let resembles = if judged.faint.is_empty() {
-            String::new()
-        } else {
-            format!(" It resembles {}, but no more than traces may.", once(judged.faint.iter().cloned()).join(", "))
-        };
-        reasons.push(format!(
-            "More is left over than noise explains. What was found in the samples themselves leaves such traces; record again without it \
-             before looking further.{resembles}"
-        ));
+        reasons.push(
+            "More is left over than noise explains. What was found in the samples themselves leaves such traces; record \
+             again without it before looking further."
+                .into(),
+        );
+        if !judged.faint.is_empty() {
+            let names = once(judged.faint.iter().cloned()).join(", ");
+            reasons.push(format!("It resembles {names}, but no more than such traces may."));
+        }
     }
     reasons.extend(
         judged.dropped.iter().map(|id| {
