@@ -8,7 +8,7 @@ use crate::tape::Record;
 /// A record closes once it is this long, s: three to a block. Coning within a record is summed sample by sample;
 /// against 20 Hz this costs nothing that shows, 8 Hz costs 5 % of the non-orthogonality (docs/method.md).
 const RECORD_S: f32 = 0.082;
-/// … or once it has turned this far, rad, which keeps the second-order coning term small and the tape's units unfilled.
+/// … or once it has turned this far, rad, which keeps terms beyond the third order small and the tape's units unfilled.
 const RECORD_RAD: f32 = 0.25;
 /// A block closes once it is this long, s: at 200 Hz 50 samples, enough to tell variances apart by a factor of 2.
 const BLOCK_S: f32 = 0.2495;
@@ -54,10 +54,8 @@ pub struct Completed {
 pub struct Accumulator {
     last: Option<Sample>,
     record_s: f32,
-    rotation: Vector3<f32>,
-    /// The same of the rate less the resting rate.
+    /// Rotation vector since the record began, of the rate less the resting rate, rad.
     turned: Vector3<f32>,
-    coning: Vector3<f32>,
     resting_rate: Vector3<f32>,
     impulse: Vector3<f32>,
     block_s: f32,
@@ -90,9 +88,7 @@ impl Accumulator {
         Self {
             last: None,
             record_s: 0.0,
-            rotation: ZERO,
             turned: ZERO,
-            coning: ZERO,
             resting_rate: ZERO,
             impulse: ZERO,
             block_s: 0.0,
@@ -130,7 +126,7 @@ impl Accumulator {
         self.integrate(&last, sample, dt);
         self.note(sample, clipped);
         let block_done = self.block_s >= BLOCK_S && self.samples >= BLOCK_SAMPLES;
-        let record_done = block_done || self.record_s >= RECORD_S || self.rotation.norm() > RECORD_RAD;
+        let record_done = block_done || self.record_s >= RECORD_S || self.turned.norm() > RECORD_RAD;
         Completed {
             record: record_done.then(|| self.take_record()),
             block: block_done.then(|| self.take_block(sample.t_us)),
@@ -138,14 +134,15 @@ impl Accumulator {
         }
     }
 
-    /// Rotation vector of a varying rate: `Σ Δθ + ½ Σ θ × Δθ` (Bortz's equation to second order), the product of rates less
-    /// the resting rate: an offset of 5 °/s would add 40 µrad to a record of a move by hand.
+    /// Rotation vector of a varying rate. Over one interval, of a rate that changes linearly from a to b, `Δ = (a + b) dt/2 + a × b dt²/12`;
+    /// one rotation after the other, to third order (Baker, Campbell and Hausdorff), `θ ← θ + Δ + ½ θ × Δ + ¹⁄₁₂ (θ − Δ) × (θ × Δ)`. Rates are
+    /// less the resting rate: an offset of 5 °/s would add 40 µrad to a record of a move by hand. The second term of Δ and the third order of
+    /// θ are 10 µrad each in a record of a brisk move.
     fn integrate(&mut self, last: &Sample, sample: &Sample, dt: f32) {
-        let step = (last.angular_rate_rad_s + sample.angular_rate_rad_s) * (0.5 * dt);
-        let turn = step - self.resting_rate * dt;
-        self.coning += self.turned.cross(&turn) * 0.5;
-        self.turned += turn;
-        self.rotation += step;
+        let [a, b] = [last, sample].map(|sample| sample.angular_rate_rad_s - self.resting_rate);
+        let turn = (a + b) * (0.5 * dt) + a.cross(&b) * (dt * dt / 12.0);
+        let swept = self.turned.cross(&turn);
+        self.turned += turn + swept * 0.5 + (self.turned - turn).cross(&swept) / 12.0;
         self.impulse += (last.specific_force_mps2 + sample.specific_force_mps2) * (0.5 * dt);
         self.record_s += dt;
         self.block_s += dt;
@@ -171,13 +168,11 @@ impl Accumulator {
     fn take_record(&mut self) -> Record {
         let record = Record {
             dt_s: self.record_s,
-            rotation_rad: self.rotation + self.coning,
+            rotation_rad: self.turned + self.resting_rate * self.record_s,
             specific_force_mps2: self.impulse / self.record_s,
         };
         self.record_s = 0.0;
-        self.rotation = Vector3::zeros();
         self.turned = Vector3::zeros();
-        self.coning = Vector3::zeros();
         self.impulse = Vector3::zeros();
         record
     }
@@ -209,5 +204,34 @@ impl Accumulator {
         self.squares_rate = Vector3::zeros();
         self.squares_force = Vector3::zeros();
         block
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+
+    /// A rate that changes its size and direction linearly, and an offset beside it, against quaternions in small steps.
+    #[test]
+    fn a_record_is_the_rotation_vector_of_a_brisk_move() {
+        let offset = Vector3::new(0.08f32, -0.05, 0.03);
+        let rate = |t_s: f64| Vector3::new(2.5 + 14.0 * t_s, -0.5 - 12.0 * t_s, 1.0 - 25.0 * t_s);
+        let mut accumulator = Accumulator::new();
+        accumulator.set_resting_rate(offset);
+        let sample = |t_us: u64| Sample {
+            t_us,
+            angular_rate_rad_s: rate(t_us as f64 * 1e-6).cast::<f32>() + offset,
+            specific_force_mps2: Vector3::zeros(),
+            temperature_degc: f32::NAN,
+        };
+        let record = (0..).find_map(|k| accumulator.push(&sample(5000 * k), 0).record).expect("a record closes");
+        let steps = 4000;
+        let dt_s = f64::from(record.dt_s) / f64::from(steps);
+        let truth = (0..steps).fold(UnitQuaternion::identity(), |attitude, step| {
+            attitude * UnitQuaternion::from_scaled_axis(rate((f64::from(step) + 0.5) * dt_s) * dt_s)
+        });
+        let error = (record.rotation_rad - offset * record.dt_s).cast::<f64>() - truth.scaled_axis();
+        assert!(truth.angle() > 0.15 && error.norm() < 3e-6, "{:.1e} rad of {:.2}", error.norm(), truth.angle());
     }
 }
