@@ -36,9 +36,9 @@ impl Group {
         self.seconds += dt_s;
     }
 
-    /// Carries the filter over the group; `density` is the rotation's variance per second.
-    pub fn propagate(&self, filter: &mut Filter, density: f32) {
-        filter.propagate(&self.drive, density * self.seconds);
+    /// Carries the filter over the group; `variance` is what its rotation's noise adds, rad².
+    pub fn propagate(&self, filter: &mut Filter, variance: f32) {
+        filter.propagate(&self.drive, variance);
     }
 
     /// The mean of the attitude as a matrix, and how attitude has moved on since that mean. The attitude at the group's end would have

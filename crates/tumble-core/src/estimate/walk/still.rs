@@ -201,7 +201,8 @@ impl<const S: usize> Walk<S> {
         let solid = noise::is_solid(segment, noise.quiet_variance) && self.is_steady(record);
         if !solid {
             self.turn(record, &Vector3::zeros(), None);
-            core::mem::take(&mut self.pass.group).propagate(&mut self.filter, noise.rate_density);
+            let variance = noise.rate_density * record.dt_s;
+            core::mem::take(&mut self.pass.group).propagate(&mut self.filter, variance);
         }
         let to_n = self.pass.attitude.to_rotation_matrix().into_inner();
         let own = noise.force_density / record.dt_s * self.noise[self.pass.segment].force_scale;

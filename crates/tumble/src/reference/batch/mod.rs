@@ -5,7 +5,7 @@
 //! the table and the Earth's rate. Rotation between rests is integrated anew from the samples at every step of the
 //! solver, so nothing is linearised that the solver does not linearise. Noise is what the device found: the two are to
 //! agree on the data, not on what noise is. What they still do differently: the device averages a twelfth of a second into
-//! a record of 16-bit numbers, and takes a group's process noise as there from its beginning ([`MeanNoise::Lumped`]), where here a
+//! a record of 16-bit numbers, and takes half of a group's process noise as there from its beginning ([`MeanNoise::Halved`]), where here a
 //! group's mean may see the exact share of it; a rest in the hand is carried by the gyroscope there and taken as one attitude here.
 
 mod link;

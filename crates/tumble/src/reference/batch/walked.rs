@@ -25,17 +25,17 @@ pub(super) struct Walked {
 pub enum MeanNoise {
     /// That of the mean of a Wiener process: `own/3`, and `own/2` in common with all that comes after.
     Exact,
-    /// All of it, as if it were there from the group's beginning: the device's.
-    Lumped,
+    /// Half of it, as if that were there from the group's beginning, and the rest came at its end: the device's.
+    Halved,
 }
 
 impl Walked {
     fn mean(&self, kind: MeanNoise) -> f64 {
-        self.before + if kind == MeanNoise::Exact { self.own / 3.0 } else { self.own }
+        self.before + if kind == MeanNoise::Exact { self.own / 3.0 } else { self.own / 2.0 }
     }
 
-    fn later(&self, kind: MeanNoise) -> f64 {
-        self.before + if kind == MeanNoise::Exact { self.own / 2.0 } else { self.own }
+    fn later(&self) -> f64 {
+        self.before + self.own / 2.0
     }
 }
 
@@ -43,7 +43,7 @@ impl Walked {
 pub(super) fn covariance(readings: &[Reading], groups: &[Walked], end: f64, kind: MeanNoise) -> DMatrix<f64> {
     let shared = |a: usize, b: usize| match groups.get(a.min(b)) {
         Some(group) if a == b => group.mean(kind),
-        Some(group) => group.later(kind),
+        Some(group) => group.later(),
         None => end,
     };
     let count = readings.len();
