@@ -21,7 +21,7 @@ fn sample_recording() -> Recording {
     };
     let rows =
         (0..50).map(|i| row(i, [f64::from(i) / 7.0, -1e-9, 1500.0 - f64::from(i)], [1.0 / 3.0, 0.9, -0.1])).collect();
-    Recording { metadata, rows, notices: Vec::new() }
+    Recording { metadata, rows, notices: Vec::new(), stamps_s: Vec::new() }
 }
 
 #[test]
@@ -35,6 +35,7 @@ fn what_is_written_reads_back_exactly() {
         rows: written.rows.iter().map(|row| Row { temp_c: None, ..*row }).collect(),
         metadata: Metadata::default(),
         notices: Vec::new(),
+        stamps_s: Vec::new(),
     };
     let mut bytes = Vec::new();
     without.write(&mut bytes).expect("memory takes it");
@@ -73,7 +74,7 @@ fn quantised(gyro_step: f64, accel_step: f64) -> Recording {
             row(i, gyro, accel)
         })
         .collect();
-    Recording { metadata: Metadata::default(), rows, notices: Vec::new() }
+    Recording { metadata: Metadata::default(), rows, notices: Vec::new(), stamps_s: Vec::new() }
 }
 
 #[test]

@@ -142,7 +142,8 @@ pub(crate) fn make(config: &SchemeConfig) -> Result<Made, SimError> {
 /// Writes a simulation down as a recorder would.
 pub(crate) fn written(config: &SchemeConfig, made: tumble_sim::Recording) -> Made {
     let rows = made.samples.iter().map(row).collect();
-    let recording = Recording { metadata: metadata(config, made.rate_hz), rows, notices: Vec::new() };
+    let recording =
+        Recording { metadata: metadata(config, made.rate_hz), rows, notices: Vec::new(), stamps_s: Vec::new() };
     Made { recording, truth: made.truth }
 }
 

@@ -26,7 +26,7 @@ fn made(config: &SchemeConfig) -> (Recording, tumble_sim::Truth) {
     let turns = if config.turns_word() == "fenced" { TurnStops::Fenced } else { TurnStops::ByHand };
     let metadata = Metadata { turns: Some(turns), box_faces: Some(BoxFaces::Square), ..Metadata::default() };
     let rows = made.samples.iter().map(row).collect();
-    (Recording { metadata, rows, notices: Vec::new() }, made.truth)
+    (Recording { metadata, rows, notices: Vec::new(), stamps_s: Vec::new() }, made.truth)
 }
 
 fn ask(recording: &Recording, without: &[&str]) -> Outcome {

@@ -19,7 +19,7 @@ fn recording(samples: &[Sample], metadata: Metadata, decimals: i32) -> Recording
         accel_g: (sample.specific_force_mps2 / STANDARD_GRAVITY_MPS2).into(),
         temp_c: Some(sample.temperature_degc),
     });
-    Recording { metadata, rows: rows.collect(), notices: Vec::new() }
+    Recording { metadata, rows: rows.collect(), notices: Vec::new(), stamps_s: Vec::new() }
 }
 
 fn gates(recording: &Recording) -> Gated {
@@ -200,4 +200,33 @@ fn slow_sampling_is_seen_at_its_limit() {
         let gated = gates(&recording(&made.samples, Metadata::default(), 6));
         assert!(gated.found.iter().any(|found| found.id == "undersampling"), "{share}: {}", words(&gated));
     }
+}
+
+/// Read for a diagnosis, stamps that repeat or run back are what it finds; read for anything else they are refused.
+#[test]
+fn stamps_that_do_not_increase_are_named() {
+    let made = SchemeConfig::realistic(Scheme::Double, 5).record().expect("a valid configuration");
+    let clean = recording(&made.samples, Metadata::default(), 6);
+    let stamped = |stamp: &dyn Fn(usize, f64) -> f64| {
+        let rows = clean.rows.iter().enumerate().map(|(k, row)| Row { t_s: stamp(k, row.t_s), ..*row });
+        Recording { rows: rows.collect(), ..clean.clone() }
+    };
+    let steps = stamped(&|_, t_s| 0.0156 * (t_s / 0.0156).floor());
+    let scatter = stamped(&|k, t_s| t_s + 1e-5 * ((31 * k * k) % 1009) as f64);
+    let mut twice = clean.clone();
+    twice.rows = clean.rows.iter().enumerate().flat_map(|(k, row)| vec![*row; 1 + usize::from(k % 60 == 7)]).collect();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("rec.csv");
+    for (id, bad) in [("timestamp_quantization", steps), ("timestamp_jitter", scatter), ("duplicated_samples", twice)] {
+        bad.write(std::fs::File::create(&file).expect("a file")).expect("written");
+        let refused = Recording::read(&file).map(|_| id).expect_err("time does not increase").to_string();
+        assert!(refused.contains("column t_s") && refused.contains("tumble diagnose"), "{refused}");
+        let read = Recording::read_with_its_stamps(&file).expect("something to be found");
+        assert!(read.notices[0].contains("not later"), "{:?}", read.notices);
+        let gated = gates(&read);
+        assert!(gated.found.iter().any(|found| found.id == id), "{id}: {}", words(&gated));
+    }
+    let back = stamped(&|k, t_s| if k == 900 { t_s - 1.0 } else { t_s });
+    back.write(std::fs::File::create(&file).expect("a file")).expect("written");
+    assert!(Recording::read_with_its_stamps(&file).is_err(), "a second back is no late stamp");
 }

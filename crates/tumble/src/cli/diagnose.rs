@@ -30,7 +30,8 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
-    let recordings = arguments.recordings.iter().map(|path| Recording::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let read = |path: &PathBuf| Recording::read_with_its_stamps(path);
+    let recordings = arguments.recordings.iter().map(read).collect::<Result<Vec<_>, _>>()?;
     let options = Options { without: arguments.without.clone(), seed: arguments.seed, conditions: None };
     let mut progress = Progress::new();
     let mut outcome = diagnose::diagnose(&recordings[0], &options, &mut |what, share| progress.share(what, share));

@@ -34,12 +34,14 @@ pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;
 /// Diagnoses a recording.
 pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progress) -> Outcome {
     progress("reading", 0.0);
-    let first = look(recording, intake(recording, options.conditions), options, progress);
-    if !second::is_due(recording, &first.diagnosis) {
-        return first;
+    let mut outcome = look(recording, intake(recording, options.conditions), options, progress);
+    if second::is_due(recording, &outcome.diagnosis) {
+        let again = look(recording, intake_without_moves(recording, options.conditions), options, progress);
+        outcome = second::settle(recording, outcome, again);
     }
-    let again = look(recording, intake_without_moves(recording, options.conditions), options, progress);
-    second::settle(recording, first, again)
+    let notices = recording.notices.iter().map(|notice| format!("Of the file: {notice}."));
+    outcome.diagnosis.reasons.extend(notices);
+    outcome
 }
 
 fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut Progress) -> Outcome {

@@ -137,7 +137,9 @@ impl Problem {
             Self::NotANumber { .. } => "repair or delete the line; numbers use a decimal point".into(),
             Self::NotFinite { .. } => "delete the line: a gap in time is allowed, an invalid reading is not".into(),
             Self::TimeNotIncreasing { .. } => {
-                "delete repeated lines or sort by time; stamps must differ by at least 1 µs".into()
+                "delete repeated lines or sort by time, stamps at least 1 µs apart; `tumble diagnose` takes such a file and says what \
+                 ails its stamps"
+                    .into()
             }
             Self::AccelUnit { .. } => "divide ax_g, ay_g and az_g by what one g is in that unit (9.80665 m/s²)".into(),
             Self::GyroUnit { .. } => "multiply gx_dps, gy_dps and gz_dps by 57.29578".into(),

@@ -25,7 +25,7 @@ pub const STANDARD_GRAVITY_MPS2: f64 = 9.806_65;
 /// One line of the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
-    /// The stamp as it stands.
+    /// The stamp as it stands, or moved ([`Recording::stamps_s`]).
     pub t_s: f64,
     /// Angular rate x, y, z.
     pub gyro_dps: [f64; 3],
@@ -62,6 +62,8 @@ pub struct Recording {
     pub rows: Vec<Row>,
     /// Remarks for the person: what was left out, and why.
     pub notices: Vec<String>,
+    /// The file's own stamps, s, where some had to be moved for time to increase; else empty.
+    pub stamps_s: Vec<f64>,
 }
 
 impl Recording {

@@ -10,23 +10,42 @@ use super::{Metadata, Recording, Row, time_us, units};
 /// The columns of the contract that must be there.
 const NEEDED: [&str; 7] = ["t_s", "gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g"];
 const TEMPERATURE: &str = "temp_c";
+/// A host that stamps what arrives is late by up to 0.4 s (docs/diagnosis.md §8), and its next stamp is not. What runs back by more
+/// is another recording, or lines out of order.
+const LATEST_S: f64 = 0.5;
+/// From a stamp to the next where that one is not later, s: told apart at 1 µs whatever the rounding.
+const APART_S: f64 = 2e-6;
 
 impl Recording {
     /// Reads and checks a file.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
+        Self::read_file(path, Stamps::Increase)
+    }
+
+    /// The same for a diagnosis, to which stamps that repeat or run back by less than half a second are something to be found: each
+    /// is set 2 µs after the one before, and a notice says how many.
+    pub fn read_with_its_stamps(path: &Path) -> Result<Self, RecordingError> {
+        Self::read_file(path, Stamps::Repeat)
+    }
+
+    /// [`Self::read`] from memory; `file` is what messages call it.
+    pub fn from_bytes(bytes: &[u8], file: &str) -> Result<Self, RecordingError> {
+        Self::parse(bytes, file, Stamps::Increase)
+    }
+
+    fn read_file(path: &Path, stamps: Stamps) -> Result<Self, RecordingError> {
         let file = path.display().to_string();
         match std::fs::read(path) {
-            Ok(bytes) => Self::from_bytes(&bytes, &file),
+            Ok(bytes) => Self::parse(&bytes, &file, stamps),
             Err(error) => Err(whole_file(&file, Problem::Unreadable(error))),
         }
     }
 
-    /// The same from memory; `file` is what messages call it.
-    pub fn from_bytes(bytes: &[u8], file: &str) -> Result<Self, RecordingError> {
+    fn parse(bytes: &[u8], file: &str, stamps: Stamps) -> Result<Self, RecordingError> {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes); // a spreadsheet's mark of UTF-8
         let text = std::str::from_utf8(bytes).map_err(|error| not_utf8(bytes, error.valid_up_to(), file))?;
         let (metadata, head_lines, table) = split_head(text, file)?;
-        Table { file, head_lines, text: table }.read(metadata)
+        Table { file, head_lines, text: table, stamps }.read(metadata)
     }
 }
 
@@ -68,11 +87,20 @@ struct Columns {
     count: usize,
 }
 
+/// What stamps may do.
+#[derive(Clone, Copy, PartialEq)]
+enum Stamps {
+    Increase,
+    /// And run back a little.
+    Repeat,
+}
+
 /// The part of the file from the header on.
 struct Table<'a> {
     file: &'a str,
     head_lines: u64,
     text: &'a str,
+    stamps: Stamps,
 }
 
 impl Table<'_> {
@@ -86,19 +114,33 @@ impl Table<'_> {
         let mut record = StringRecord::new();
         self.next(&mut reader, &mut record)?;
         let columns = self.columns(&record)?;
-        let mut rows: Vec<Row> = Vec::new();
+        let (mut rows, mut stamps_s, mut moved): (Vec<Row>, Vec<f64>, u32) = (Vec::new(), Vec::new(), 0);
         while self.next(&mut reader, &mut record)? {
             let is_last = reader.position().byte() as usize >= self.text.len();
-            let row = self.row(&record, &columns, is_last)?;
-            self.check_time(&rows, &row, &record)?;
+            let mut row = self.row(&record, &columns, is_last)?;
+            stamps_s.push(row.t_s);
+            if let Err(problem) = in_time(&rows, &row) {
+                let before_s = rows.last().map_or(0.0, |row| row.t_s);
+                if self.stamps == Stamps::Increase || row.t_s < before_s - LATEST_S {
+                    return Err(self.at(&record, Some("t_s"), problem));
+                }
+                row.t_s = before_s + APART_S;
+                moved += 1;
+            }
             rows.push(row);
         }
-        let notices = self.drop_unfinished(&mut rows);
+        let mut notices = self.drop_unfinished(&mut rows);
+        if moved > 0 {
+            notices.push(format!("{moved} of {} stamps are not later than the one before", rows.len()));
+        } else {
+            stamps_s.clear();
+        }
+        stamps_s.truncate(rows.len());
         if rows.is_empty() {
             return Err(whole_file(self.file, Problem::NoSamples));
         }
         units::check(&rows).map_err(|problem| whole_file(self.file, problem))?;
-        Ok(Recording { metadata, rows, notices })
+        Ok(Recording { metadata, rows, notices, stamps_s })
     }
 
     /// The only error left to the `csv` crate here is one of reading from memory, which cannot happen.
@@ -149,16 +191,6 @@ impl Table<'_> {
         Ok(Row { t_s, gyro_dps: [gx, gy, gz], accel_g: [ax, ay, az], temp_c })
     }
 
-    fn check_time(&self, rows: &[Row], row: &Row, record: &StringRecord) -> Result<(), RecordingError> {
-        let (Some(first), Some(previous)) = (rows.first(), rows.last()) else { return Ok(()) };
-        let us = |r: &Row| time_us(r.t_s, first.t_s);
-        if row.t_s > previous.t_s && us(row) > us(previous) {
-            return Ok(());
-        }
-        let problem = Problem::TimeNotIncreasing { time_s: row.t_s, previous_s: previous.t_s };
-        Err(self.at(record, Some("t_s"), problem))
-    }
-
     /// Without a line end, a last line of the right number of fields may still be cut within its last number, which
     /// nobody could tell (`-0.98` of `-0.981`): one sample is a small price for never taking such a value.
     fn drop_unfinished(&self, rows: &mut Vec<Row>) -> Vec<String> {
@@ -185,6 +217,16 @@ impl Table<'_> {
         let skipped = self.text[before.len()..].split_inclusive('\n').take_while(|line| is_skipped(line)).count();
         self.head_lines + 1 + (before.matches('\n').count() + skipped) as u64
     }
+}
+
+/// Is a row later than those before?
+fn in_time(rows: &[Row], row: &Row) -> Result<(), Problem> {
+    let (Some(first), Some(previous)) = (rows.first(), rows.last()) else { return Ok(()) };
+    let us = |r: &Row| time_us(r.t_s, first.t_s);
+    if row.t_s > previous.t_s && us(row) > us(previous) {
+        return Ok(());
+    }
+    Err(Problem::TimeNotIncreasing { time_s: row.t_s, previous_s: previous.t_s })
 }
 
 fn shortened(text: &str) -> String {

@@ -49,7 +49,9 @@ pub(super) const STEPS: Card = Card {
 
 /// Both gates: at most one fires.
 pub fn examine(view: &View) -> (Outcome, Outcome) {
-    let dt: Vec<f64> = view.t_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let own = &view.scene.recording.stamps_s;
+    let stamps = if own.is_empty() { &view.t_s } else { own };
+    let dt: Vec<f64> = stamps.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let limit_ms = 1e3 * view.dt_s;
     // The rms of N errors scatters by 1/√(2N) of itself, half as much again as neighbours share one.
     let surely = 1.0 + SURE * (0.75 / dt.len().max(1) as f64).sqrt();
@@ -100,7 +102,7 @@ fn clock_step(view: &View, dt: &[f64]) -> Option<(f64, f64)> {
     candidates.sort_by(|a, b| b.total_cmp(a));
     candidates.into_iter().find_map(|step| {
         let multiple = |dt: &f64| (dt / step).round();
-        // Text of microseconds, and stamps that would repeat set a few µs on, stay well within this.
+        // Text of microseconds, and stamps that a writer would repeat and set a few µs on, stay well within this.
         let near = |dt: &&f64| (*dt - multiple(dt) * step).abs() < (0.02 * step).max(3e-5);
         let on = dt.iter().filter(near).count() as f64 / dt.len() as f64;
         let low = (mean_s / step).floor();
