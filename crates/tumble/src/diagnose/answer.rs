@@ -89,12 +89,17 @@ fn unknown(
         correlates.extend(exhibits::correlates(bench, leftover));
     }
     correlates.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let place = if leftover.is_real() || judged.restless.is_none() {
+        findings::place(bench, &leftover.rows, &leftover.signal, origin_s)
+    } else {
+        findings::moves(bench, origin_s)
+    };
     let fallen = judged.demoted.into_iter().map(|finding| finding.found.id);
     let gains = selection.first.iter().filter(|score| score.gain > selection.threshold);
     let alike = gains.map(|score| bench.candidates[score.candidate].effect.card.id.to_string());
     let alike = alike.filter(|id| !effects.iter().any(|effect| effect.id == *id)).take(3);
     Unknown {
-        place: findings::place(bench, &leftover.rows, &leftover.signal, origin_s),
+        place,
         correlates_with: correlates.into_iter().map(|(shape, _)| shape).take(5).collect(),
         resembles: once(fallen.chain(alike)),
         p_value: judged.p_value,
@@ -120,6 +125,13 @@ fn reasons(bench: &Bench, judged: &Judged, poses: usize, conditions: Conditions)
             let names = once(judged.faint.iter().cloned()).join(", ");
             reasons.push(format!("It resembles {names}, but no more than such traces may."));
         }
+    }
+    if let Some(restless) = &judged.restless {
+        reasons.push(format!(
+            "The box did not end where it was measured to: {}. What shows in motion alone has limits as wide as that. Move it slower and \
+             more smoothly: what goes by that was the speed or the rate of sampling.",
+            restless.shape()
+        ));
     }
     reasons.extend(
         judged.dropped.iter().map(|id| {

@@ -200,6 +200,12 @@ fn whole_recording(bench: &Bench, first: usize, origin_s: f64) -> Place {
     }
 }
 
+/// All that moves, as the gyroscope saw it.
+pub fn moves(bench: &Bench, origin_s: f64) -> Place {
+    let moving = bench.twin.stretches.iter().filter(|stretch| !stretch.is_rest());
+    Place { segments: moving.map(|stretch| stretch.number).collect(), ..whole_recording(bench, 0, origin_s) }
+}
+
 /// Mean squares before and after, on rows fitted and on rows left out.
 pub fn fit_report(bench: &Bench, selection: &Selection) -> FitReport {
     let (before, after) = (&selection.before, &selection.after);

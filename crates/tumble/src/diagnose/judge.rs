@@ -9,6 +9,7 @@ use super::catalogue::earth_rotation;
 use super::exhibits;
 use super::findings::{Finding, TIE};
 use super::search::bench::{Accepted, Bench};
+use super::search::restless::{self, Restless};
 use super::search::select::Selection;
 use super::search::unknown::{self, Leftover};
 use super::search::wandering;
@@ -39,6 +40,8 @@ pub struct Judged {
     pub better: Vec<(String, f64)>,
     /// Largest probability of as much by chance.
     pub p_value: f64,
+    /// Do moves scatter by more than any noise?
+    pub restless: Option<Restless>,
 }
 
 impl Judged {
@@ -53,6 +56,7 @@ impl Judged {
             faint: Vec::new(),
             better: Vec::new(),
             p_value: leftover.p_value(),
+            restless: None,
         }
     }
 
@@ -117,6 +121,10 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     }
     drop_names(bench, selection, &mut judged, dropped);
     one_for_all(bench, selection, &mut judged);
+    judged.restless = restless::restless(&bench.twin, &selection.noise);
+    if let Some(restless) = judged.restless.filter(|_| judged.named.is_empty() && !judged.unknown) {
+        judged.nameless(restless.p_value, vec![(restless.shape(), -restless.p_value.ln())]);
+    }
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.
     if judged.unknown {
         judged.demote(|finding| finding.is_walk);

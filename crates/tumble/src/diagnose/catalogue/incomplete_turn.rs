@@ -1,13 +1,10 @@
 //! A turn that should have been whole stopped short or went too far, by more than its stop allows.
 
-use std::f64::consts::PI;
-
-use tumble_core::motion::path::WHOLE_TURN;
-
 use super::{Card, DPS, Effect, Model, Variant, parameter};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::influence::Influence;
+use crate::diagnose::twin::visit::{Rested, Visit};
 
 const CARD: Card = Card {
     id: "incomplete_turn",
@@ -57,6 +54,7 @@ fn model(twin: &Twin) -> Model {
 }
 
 /// A whole turn, in one go or in steps.
+#[derive(Clone, Copy)]
 struct Turn {
     /// Stretch of its last step.
     last: usize,
@@ -66,30 +64,36 @@ struct Turn {
     sign: f64,
 }
 
-/// Whole turns by stays on a face, as the twin closes them: more than half a turn since the last stop, and nearly back.
+/// Whole turns by the stops that they count from, as the twin closes them.
 fn visits(twin: &Twin) -> Vec<Vec<Turn>> {
-    let attitude = |sample: usize| twin.trajectory.moments[sample].attitude;
     let mut visits: Vec<Vec<Turn>> = vec![Vec::new()];
-    let mut since: Option<(usize, f64)> = None;
+    let (mut visit, mut ended): (Option<Visit>, usize) = (None, 0);
     for stretch in &twin.stretches {
         let end = stretch.samples.end;
-        match (stretch.deed, visits.last_mut()) {
-            (Deed::Turn { angle_rad, .. }, Some(visit)) if !stretch.excluded => {
-                let (first, turned) = since.unwrap_or((stretch.samples.start, 0.0));
-                let turned = turned + angle_rad;
-                let off = attitude(end - 1).angle_to(&attitude(first));
-                let back = turned.abs() > PI && off < f64::from(WHOLE_TURN);
-                since = (!back).then_some((first, turned));
-                if back {
-                    visit.push(Turn { last: stretch.number, end, sign: -turned.signum() });
-                }
-            }
-            (Deed::Move | Deed::Turn { .. }, _) => {
-                visits.push(Vec::new());
-                since = None;
-            }
-            _ => {}
+        if let Deed::Turn { angle_rad, .. } = stretch.deed
+            && !stretch.excluded
+        {
+            visit.iter_mut().for_each(|visit| visit.turn(stretch.number, angle_rad));
+            ended = end;
+            continue;
         }
+        let kept = visit.take();
+        let Some(face) = stretch.face().filter(|_| stretch.is_rest()) else { continue };
+        let attitude = twin.trajectory.moments[end - 1].attitude;
+        let fresh = || Visit::begin(face, attitude, stretch.number);
+        let mut on = kept.filter(|visit| visit.face == face).unwrap_or_else(fresh);
+        match on.rest(&attitude, &(attitude * face.normal().cast::<f64>())) {
+            Rested::Closed(_, sign) => {
+                let turn = Turn { last: on.last_turn, end: ended, sign: -sign };
+                visits.last_mut().into_iter().for_each(|turns| turns.push(turn));
+            }
+            Rested::Between => {}
+            Rested::Nudged => {
+                visits.push(Vec::new());
+                on = fresh();
+            }
+        }
+        visit = Some(on);
     }
     visits
 }

@@ -5,6 +5,7 @@ pub mod bench;
 pub mod generic;
 pub mod ledger;
 pub mod null;
+pub mod restless;
 pub mod select;
 pub mod shares;
 pub mod unknown;

@@ -48,6 +48,8 @@ pub struct Selection {
     pub after: Arc<Rows>,
     /// ln p at the end.
     pub evidence: f64,
+    /// Noise at the end.
+    pub noise: Noise,
 }
 
 /// The null's noise, by evidence: stops, faces and moves as the device found them or as good as they can be, and biases that wander as
@@ -99,7 +101,7 @@ pub fn select(bench: &mut Bench, seed: u64, progress: &mut dyn FnMut(&str, f32))
     prune(bench, threshold);
     let (noise, evidence) = settle_walks(bench);
     let after = bench.rows(noise);
-    Selection { threshold, first, before, null_scales, null_noise, after, evidence }
+    Selection { threshold, first, before, null_scales, null_noise, after, evidence, noise }
 }
 
 /// Takes in the best, one after the other, while it pays; the scores of the first round.

@@ -16,6 +16,7 @@ mod scatter;
 pub mod state;
 pub mod steps;
 pub mod trajectory;
+pub mod visit;
 mod walk;
 
 use tumble_core::estimate::Conditions;

@@ -5,9 +5,8 @@
 
 use std::ops::Range;
 
-use nalgebra::{DMatrix, UnitQuaternion, Vector3};
+use nalgebra::{DMatrix, Vector3};
 use tumble_core::face::Face;
-use tumble_core::motion::path::WHOLE_TURN;
 
 use super::column::Column;
 use super::data::{Deed, Stretch};
@@ -16,14 +15,8 @@ use super::rows::{Address, Class, Rows};
 use super::state::{self, Drive, Observation, State, Whitened};
 use super::steps::Step;
 use super::trajectory::Moment;
+use super::visit::{Rested, Visit};
 use super::{Pass, noise};
-
-struct Visit {
-    face: Face,
-    first: UnitQuaternion<f64>,
-    turned_rad: f64,
-    last_turn: usize,
-}
 
 /// The pass's memory.
 pub(super) struct Walk<'a> {
@@ -114,10 +107,7 @@ impl<'a> Walk<'a> {
         self.bridge |= stretch.broken;
         let turn = matches!(stretch.deed, Deed::Turn { .. }) && !stretch.excluded;
         match (&mut self.visit, stretch.deed) {
-            (Some(visit), Deed::Turn { angle_rad, .. }) if turn => {
-                visit.turned_rad += angle_rad;
-                visit.last_turn = stretch.number;
-            }
+            (Some(visit), Deed::Turn { angle_rad, .. }) if turn => visit.turn(stretch.number, angle_rad),
             (visit, _) => *visit = None,
         }
         if turn {
@@ -230,21 +220,20 @@ impl<'a> Walk<'a> {
             return;
         };
         let normal_n = attitude * face.normal().cast::<f64>();
-        let sigma = self.pass.noise.stop_sigma_rad;
         let samples = &stretch.samples;
         let middle_s = 0.5 * (self.moment(samples.start).t_s + self.moment(samples.end - 1).t_s);
-        let fresh = match self.visit.take().filter(|visit| visit.face == face) {
-            None => {
-                self.state.clone_heading(&normal_n, sigma);
-                self.visit = Some(Visit { face, first: attitude, turned_rad: 0.0, last_turn: stretch.number });
-                true
+        let kept = self.visit.take().filter(|visit| visit.face == face);
+        let fresh = kept.is_none();
+        let mut visit = kept.unwrap_or_else(|| Visit::begin(face, attitude, stretch.number));
+        match visit.rest(&attitude, &normal_n) {
+            Rested::Closed(left, _) => self.close(&visit, left, stretch, &normal_n, middle_s),
+            Rested::Between => {}
+            Rested::Nudged => {
+                self.state.clone_heading(&normal_n, self.pass.noise.stop_sigma_rad);
+                visit = Visit::begin(face, attitude, stretch.number);
             }
-            Some(mut visit) => {
-                self.close(&mut visit, stretch, &attitude, &normal_n, middle_s);
-                self.visit = Some(visit);
-                false
-            }
-        };
+        }
+        self.visit = Some(visit);
         if let Some(facet) = self.pass.noise.facet_sigma_rad {
             if fresh {
                 self.state.reset(state::FACET, 2, facet);
@@ -253,34 +242,22 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Whole turns since the face came to the table end at the stop at which they began.
-    fn close(
-        &mut self,
-        visit: &mut Visit,
-        stretch: &Stretch,
-        attitude: &UnitQuaternion<f64>,
-        normal_n: &Vector3<f64>,
-        middle_s: f64,
-    ) {
-        let left = (attitude * visit.first.inverse()).scaled_axis().dot(normal_n);
-        let turned = visit.turned_rad.abs();
-        if turned > std::f64::consts::PI && left.abs() < f64::from(WHOLE_TURN) {
-            visit.turned_rad = 0.0;
-            let sigma = self.pass.noise.stop_sigma_rad;
-            let observation = Observation::new(left, sigma * sigma)
-                .with(state::ATTITUDE, (-normal_n).iter().copied())
-                .with(state::FENCE, [1.0]);
-            let columns = self.columns;
-            let ends = |c: usize| match &columns[c].influence {
-                Influence::Stop(turns) => {
-                    turns.iter().filter(|(stretch, _)| *stretch == visit.last_turn).map(|(_, unit)| unit).sum()
-                }
-                _ => 0.0,
-            };
-            let whitened = self.state.observe(&observation, ends);
-            let late = self.alternating();
-            self.push(whitened, Class::Closure, visit.face.axis(), stretch, middle_s, late);
-        }
+    /// Whole turns since the visit's first stop end at it.
+    fn close(&mut self, visit: &Visit, left: f64, stretch: &Stretch, normal_n: &Vector3<f64>, middle_s: f64) {
+        let sigma = self.pass.noise.stop_sigma_rad;
+        let observation = Observation::new(left, sigma * sigma)
+            .with(state::ATTITUDE, (-normal_n).iter().copied())
+            .with(state::FENCE, [1.0]);
+        let columns = self.columns;
+        let ends = |c: usize| match &columns[c].influence {
+            Influence::Stop(turns) => {
+                turns.iter().filter(|(stretch, _)| *stretch == visit.last_turn).map(|(_, unit)| unit).sum()
+            }
+            _ => 0.0,
+        };
+        let whitened = self.state.observe(&observation, ends);
+        let late = self.alternating();
+        self.push(whitened, Class::Closure, visit.face.axis(), stretch, middle_s, late);
     }
 
     /// `(R n)ₓᵧ = −(φ × R n)ₓᵧ + p − (R e)ₓᵧ`.

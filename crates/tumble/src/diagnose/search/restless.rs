@@ -1,0 +1,55 @@
+//! Moves that end elsewhere than they were measured to: nothing else may be left, for their scatter passes for the noise of moves.
+//!
+//! The estimator takes the median of what moves from rest to rest scatter for motion's own noise. With N times (squared) the noise of rest
+//! the median of n moves' χ²₂ is 1.386 N; noise in motion 1.5 times that at rest is let pass (2.25 squared). A move is beyond
+//! the median with probability `q = exp(−0.693 N/2.25)`, and half of them are with at most `(4 q (1 − q))^(n/2)` (Chernoff).
+
+use super::null::FALSE_ALARMS;
+use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::data::Deed;
+use crate::diagnose::twin::noise::Noise;
+
+/// Noise in motion over that at rest, squared, that a diagnosis has to bear.
+const BORNE: f64 = 2.25;
+
+/// They scatter by more than any noise.
+#[derive(Clone, Copy, Debug)]
+pub struct Restless {
+    /// By so many times the noise of rest, squared.
+    pub times: f64,
+    /// Largest probability of as much by chance.
+    pub p_value: f64,
+}
+
+/// Do they, under the noise that the search ended with?
+pub fn restless(twin: &Twin, noise: &Noise) -> Option<Restless> {
+    let moved = twin.stretches.iter().filter(|stretch| {
+        matches!(stretch.deed, Deed::Move | Deed::Turn { .. }) && !stretch.excluded && !stretch.broken
+    });
+    let times = noise.motion_scale;
+    let beyond = (-std::f64::consts::LN_2 * times / BORNE).exp();
+    let p_value = (4.0 * beyond * (1.0 - beyond)).powf(0.5 * moved.count() as f64);
+    (times > BORNE && p_value < FALSE_ALARMS).then_some(Restless { times, p_value })
+}
+
+impl Restless {
+    /// In words.
+    pub fn shape(&self) -> String {
+        format!("moves from rest to rest, which scatter by {:.0} times (squared) what noise explains", self.times)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The bound is above the exact tail: of 12 moves 6 beyond a median that one in ten passes has 5e-4.
+    #[test]
+    fn the_bound_is_a_bound() {
+        let (n, q) = (12u32, 0.1f64);
+        let choose = |k: u32| (0..k).map(|i| f64::from(n - i) / f64::from(i + 1)).product::<f64>();
+        let tail: f64 = (n / 2..=n).map(|k| choose(k) * q.powi(k as i32) * (1.0 - q).powi((n - k) as i32)).sum();
+        let bound = (4.0 * q * (1.0 - q)).powf(0.5 * f64::from(n));
+        assert!(tail < bound && bound < 10.0 * tail, "{tail:e} {bound:e}");
+    }
+}
