@@ -15,6 +15,7 @@ pub mod normal;
 pub mod prior;
 pub mod scatter;
 pub mod six_face;
+pub mod stand;
 pub mod start;
 pub mod state;
 pub mod sums;

@@ -11,6 +11,7 @@ use super::filter::Filter;
 use super::group::Group;
 use super::model::{self, Nominal, Observation};
 use super::noise::{Noise, PIVOT_FLOOR};
+use super::stand::standing;
 use super::state::Block;
 use super::sums::SegmentNoise;
 use super::turn_noise::TurnNoise;
@@ -80,7 +81,7 @@ impl<const S: usize> Walk<S> {
                 self.enter(tape, segment, noise);
             }
             if index >= usize::from(segment.end) {
-                self.leave(segment, noise);
+                self.leave(tape, segment, noise);
                 self.pass.segment += 1;
                 self.pass.record = 0;
                 continue;
@@ -242,11 +243,9 @@ impl<const S: usize> Walk<S> {
         }
     }
 
-    fn leave(&mut self, segment: &Segment, noise: &Noise) {
-        if let Kind::Still { face, .. } = segment.kind
-            && segment.exclusion == Exclusion::None
-        {
-            self.leave_still(face, noise);
+    fn leave<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, noise: &Noise) {
+        if segment.is_usable_still() {
+            self.leave_still(standing(tape.segments(), self.pass.segment), noise);
         }
         if self.pass.aligned {
             self.close_group(segment, noise);

@@ -107,7 +107,7 @@ fn parameter(reason: &Reason, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         Reason::NotObservable { name } => write!(
             f,
             "{name} cannot be determined from this session. Turns on the faces of that axis would tell; where only a \
-             square box can tell, say \"calibrate square\" if yours is."
+             square box can tell, say \"calibrate square\" if yours is; if that was said, rests did not lie flat on their faces."
         ),
         Reason::Uncertain { name, sigma, limit } => write!(
             f,

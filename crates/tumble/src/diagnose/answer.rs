@@ -135,7 +135,7 @@ fn reasons(bench: &Bench, judged: &Judged, poses: usize, conditions: Conditions)
     }
     reasons.extend(
         judged.dropped.iter().map(|id| {
-            format!("{id} would explain the data it is fitted to, but not the half left out: it is not named.")
+            format!("{id} would explain the data it is fitted to, but not the half left out or not beside the others: it is not named.")
         }),
     );
     if bench.twin.noise.facet_sigma_rad.is_none() && conditions.faces == BoxFaces::Unknown {

@@ -28,7 +28,7 @@ pub struct Judged {
     pub demoted: Vec<Finding>,
     /// Is something there that has no name?
     pub unknown: bool,
-    /// What improves only on the data it was fitted to.
+    /// What improves only on the data it was fitted to, or not beside the others.
     pub dropped: Vec<String>,
     /// Do distortions of the samples leave traces that names have to stand clear of?
     pub beside_gates: bool,
@@ -101,7 +101,9 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             continue;
         }
         let Some(k) = bench.accepted.iter().position(|a| bench.candidate(a).effect.card.id == id) else { continue };
-        if finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before) {
+        // What pays no longer beside what came later is dropped as well.
+        let worse = finding.found.held_out.is_some_and(|held_out| held_out.after > held_out.before);
+        if worse || finding.found.evidence < selection.threshold {
             dropped.push((k, finding));
             continue;
         }
@@ -132,8 +134,8 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     judged
 }
 
-/// What does not hold on data left out is chance or has the wrong form: the latter if shapes without a name are more than chance in its
-/// place.
+/// What does not hold on data left out, or no longer pays, is chance or has the wrong form: the latter if shapes without a name are more
+/// than chance in its place.
 fn drop_names(bench: &mut Bench, selection: &Selection, judged: &mut Judged, dropped: Vec<(usize, Finding)>) {
     if dropped.is_empty() {
         return;

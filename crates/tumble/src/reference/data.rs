@@ -1,6 +1,8 @@
 //! The segments of a tape with the samples that they were made from.
 
 use nalgebra::{UnitQuaternion, Vector3};
+use tumble_core::estimate::stand::standing;
+use tumble_core::face::Face;
 use tumble_core::tape::{Exclusion, Kind, Record, Segment};
 
 use crate::recording::Reading;
@@ -31,6 +33,8 @@ pub struct Stretch {
     pub segment: Segment,
     /// Its number on the tape.
     pub number: usize,
+    /// The face that a rest stands on the table with.
+    pub face: Option<Face>,
     /// In order of time.
     pub intervals: Vec<Interval>,
     /// s.
@@ -43,17 +47,18 @@ pub struct Stretch {
 
 /// All segments with their samples; those without samples are left out.
 pub fn stretches(segments: &[Segment], readings: &[Reading]) -> Vec<Stretch> {
-    segments.iter().enumerate().filter_map(|(number, segment)| stretch(number, segment, readings)).collect()
+    (0..segments.len()).filter_map(|number| stretch(number, segments, readings)).collect()
 }
 
 /// The same from the tape's own records, what the device itself works from; `resting_rate` in rad/s.
 pub fn records(tape: &HostTape, resting_rate: &Vector3<f64>) -> Vec<Stretch> {
     let all = (0..tape.len()).filter_map(|index| tape.record(index)).collect::<Vec<Record>>();
-    let stretch = |(number, segment): (usize, &Segment)| {
+    let stretch = |number: usize| {
+        let segment = &tape.segments()[number];
         let range = usize::from(segment.first)..usize::from(segment.end);
-        assemble(number, segment, range.map(|index| recorded(&all, resting_rate, index)).collect())
+        assemble(number, tape.segments(), range.map(|index| recorded(&all, resting_rate, index)).collect())
     };
-    tape.segments().iter().enumerate().filter_map(stretch).collect()
+    (0..tape.segments().len()).filter_map(stretch).collect()
 }
 
 fn recorded(records: &[Record], resting_rate: &Vector3<f64>, index: usize) -> Interval {
@@ -76,13 +81,14 @@ fn recorded(records: &[Record], resting_rate: &Vector3<f64>, index: usize) -> In
     }
 }
 
-fn stretch(number: usize, segment: &Segment, readings: &[Reading]) -> Option<Stretch> {
+fn stretch(number: usize, segments: &[Segment], readings: &[Reading]) -> Option<Stretch> {
+    let segment = &segments[number];
     let first = readings.partition_point(|reading| reading.sample.t_us < segment.start_us);
     let end = readings.partition_point(|reading| reading.sample.t_us <= segment.end_us);
-    assemble(number, segment, (first + 1..end).map(|last| interval(readings, last)).collect())
+    assemble(number, segments, (first + 1..end).map(|last| interval(readings, last)).collect())
 }
 
-fn assemble(number: usize, segment: &Segment, intervals: Vec<Interval>) -> Option<Stretch> {
+fn assemble(number: usize, segments: &[Segment], intervals: Vec<Interval>) -> Option<Stretch> {
     let duration_s: f64 = intervals.iter().map(|interval| interval.dt_s).sum();
     if duration_s <= 0.0 {
         return None;
@@ -92,7 +98,8 @@ fn assemble(number: usize, segment: &Segment, intervals: Vec<Interval>) -> Optio
     };
     let mean_rate = mean(|interval| 0.5 * (interval.rates[0] + interval.rates[1]));
     let mean_force = mean(|interval| interval.force);
-    Some(Stretch { segment: *segment, number, duration_s, mean_rate, mean_force, intervals })
+    let (segment, face) = (segments[number], standing(segments, number));
+    Some(Stretch { segment, number, face, duration_s, mean_rate, mean_force, intervals })
 }
 
 fn interval(readings: &[Reading], last: usize) -> Interval {

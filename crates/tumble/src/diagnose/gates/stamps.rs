@@ -24,8 +24,9 @@ const LEAST_SHARE: f64 = 0.02;
 /// interval to better than that leaves stamps as even as a clock without steps. (A step above half the interval keeps one in a
 /// hundred, for spacings of two intervals are lost samples.)
 const LEAST_BEATS: f64 = 10.0;
-/// Least step as a share of the interval: 1e-4 s of text is 2 % of 5 ms.
-const LEAST_STEP: f64 = 0.1;
+/// Least step as a share of the interval, and in s: text has 1e-4 s, and a tick of 1/4096 s is 2.4e-4.
+const LEAST_STEP: f64 = 0.03;
+const LEAST_STEP_S: f64 = 1.5e-4;
 
 pub(super) const JITTER: Card = Card {
     id: "timestamp_jitter",
@@ -57,7 +58,10 @@ pub fn examine(view: &View) -> (Outcome, Outcome) {
     let surely = 1.0 + SURE * (0.75 / dt.len().max(1) as f64).sqrt();
     let mut jitter = Outcome { limit: limit(&JITTER, surely * LEAST_SHARE * limit_ms, "ms", ""), ..Outcome::default() };
     let why = "a step that divides the interval to within 50 ppm does not show and does no harm";
-    let mut steps = Outcome { limit: limit(&STEPS, LEAST_STEP * limit_ms, "ms", why), ..Outcome::default() };
+    let mut steps = Outcome {
+        limit: limit(&STEPS, (LEAST_STEP * limit_ms).max(1e3 * LEAST_STEP_S), "ms", why),
+        ..Outcome::default()
+    };
     if dt.len() < 100 {
         return (jitter, steps);
     }
@@ -98,7 +102,7 @@ fn clock_step(view: &View, dt: &[f64]) -> Option<(f64, f64)> {
     let common = common_spacings(dt);
     let mut candidates: Vec<f64> = common.clone();
     candidates.extend(common.iter().enumerate().flat_map(|(i, a)| common[..i].iter().map(move |b| (a - b).abs())));
-    candidates.retain(|step| *step > LEAST_STEP * mean_s);
+    candidates.retain(|step| *step > (LEAST_STEP * mean_s).max(LEAST_STEP_S));
     candidates.sort_by(|a, b| b.total_cmp(a));
     candidates.into_iter().find_map(|step| {
         let multiple = |dt: &f64| (dt / step).round();

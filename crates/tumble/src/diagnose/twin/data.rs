@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 use tumble_core::estimate::noise::{self, Noise};
+use tumble_core::estimate::stand::standing;
 use tumble_core::face::Face;
 use tumble_core::tape::{Exclusion, Kind, Segment};
 
@@ -39,7 +40,7 @@ impl Raw {
 pub enum Deed {
     /// At rest on something solid.
     Rest {
-        /// Which axis is up, if any.
+        /// The face that it stands on the table with, if any.
         face: Option<Face>,
     },
     /// At rest in a hand: attitude is carried by the gyroscope.
@@ -101,7 +102,7 @@ pub fn stretches(segments: &[Segment], samples: &[Raw], noise: &Noise) -> Vec<St
         let range = at(segment.start_us)..(at(segment.end_us) + 1).min(samples.len());
         (range.len() >= 3).then(|| Stretch {
             number,
-            deed: deed(segment, noise),
+            deed: deed(segments, number, noise),
             samples: range,
             broken: matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap),
             excluded: segment.exclusion != Exclusion::None,
@@ -110,9 +111,12 @@ pub fn stretches(segments: &[Segment], samples: &[Raw], noise: &Noise) -> Vec<St
     segments.iter().enumerate().filter_map(stretch).collect()
 }
 
-fn deed(segment: &Segment, noise: &Noise) -> Deed {
+fn deed(segments: &[Segment], number: usize, noise: &Noise) -> Deed {
+    let segment = &segments[number];
     match segment.kind {
-        Kind::Still { face, .. } if noise::is_solid(segment, noise.quiet_variance) => Deed::Rest { face },
+        Kind::Still { .. } if noise::is_solid(segment, noise.quiet_variance) => {
+            Deed::Rest { face: standing(segments, number) }
+        }
         Kind::Still { .. } => Deed::Held,
         Kind::OnTable { face, angle_rad } => Deed::Turn { face, angle_rad: f64::from(angle_rad) },
         Kind::Hand => Deed::Move,

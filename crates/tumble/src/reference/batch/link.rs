@@ -70,7 +70,7 @@ pub(super) fn link<'a>(
 ) -> Block<'a> {
     let stretches = &setting.stretches[from.stretch + 1..to.stretch];
     let duration_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
-    let mut face = setting.stretches[from.stretch].segment.face().zip(facet).filter(|_| setting.plate_known(from));
+    let mut face = setting.stretches[from.stretch].face.zip(facet).filter(|_| setting.plate_known(from));
     let mut legs: Vec<Leg> = Vec::new();
     for stretch in stretches {
         face = face.filter(|_| matches!(stretch.segment.kind, Kind::OnTable { .. }));

@@ -62,9 +62,9 @@ pub(crate) struct Setting<'a> {
 impl Setting<'_> {
     /// Is the plate believed in the turns that follow a rest? As on the device: of a box called square, three faces seen.
     fn plate_known(&self, rest: Rest) -> bool {
-        let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.segment.face());
+        let faces = self.stretches.iter().filter(|stretch| stretch.is_rest()).filter_map(|rest| rest.face);
         let seen = faces.fold(FaceSet::EMPTY, FaceSet::with);
-        let leaning = rest.leaning(self.stretches[rest.stretch].segment.face());
+        let leaning = rest.leaning(self.stretches[rest.stretch].face);
         self.noise.facet_sigma_rad.is_some() && seen.len() >= 3 && leaning < LEANING
     }
 }

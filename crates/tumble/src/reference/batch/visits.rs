@@ -33,7 +33,7 @@ pub(super) fn visits<'a>(
     let mut next = rests.iter().peekable();
     for (index, stretch) in setting.stretches.iter().enumerate() {
         if let Some(rest) = next.next_if(|rest| rest.stretch == index) {
-            visit = stretch.segment.face().map(|face| {
+            visit = stretch.face.map(|face| {
                 let kept = visit.take().filter(|visit| visit.face == face);
                 rested(setting, unknowns, *rest, face, kept, &mut blocks)
             });
