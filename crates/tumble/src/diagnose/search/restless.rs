@@ -27,9 +27,17 @@ pub fn restless(twin: &Twin, noise: &Noise) -> Option<Restless> {
         matches!(stretch.deed, Deed::Move | Deed::Turn { .. }) && !stretch.excluded && !stretch.broken
     });
     let times = noise.motion_scale;
+    let p_value = chance(times, moved.count());
+    (p_value < FALSE_ALARMS).then_some(Restless { times, p_value })
+}
+
+/// Bound of the probability that the median of so many moves is as far out.
+fn chance(times: f64, moves: usize) -> f64 {
+    if times <= BORNE {
+        return 1.0;
+    }
     let beyond = (-std::f64::consts::LN_2 * times / BORNE).exp();
-    let p_value = (4.0 * beyond * (1.0 - beyond)).powf(0.5 * moved.count() as f64);
-    (times > BORNE && p_value < FALSE_ALARMS).then_some(Restless { times, p_value })
+    (4.0 * beyond * (1.0 - beyond)).powf(0.5 * moves as f64)
 }
 
 impl Restless {
@@ -43,13 +51,18 @@ impl Restless {
 mod tests {
     use super::*;
 
-    /// The bound is above the exact tail: of 12 moves 6 beyond a median that one in ten passes has 5e-4.
+    /// Above the exact tail of half of n moves beyond the median, and not by more than tenfold; noise that is borne is no alarm.
     #[test]
     fn the_bound_is_a_bound() {
-        let (n, q) = (12u32, 0.1f64);
+        let n = 12u32;
         let choose = |k: u32| (0..k).map(|i| f64::from(n - i) / f64::from(i + 1)).product::<f64>();
-        let tail: f64 = (n / 2..=n).map(|k| choose(k) * q.powi(k as i32) * (1.0 - q).powi((n - k) as i32)).sum();
-        let bound = (4.0 * q * (1.0 - q)).powf(0.5 * f64::from(n));
-        assert!(tail < bound && bound < 10.0 * tail, "{tail:e} {bound:e}");
+        for times in [4.0, 7.0, 20.0] {
+            let q = 0.5f64.powf(times / BORNE);
+            let tail: f64 = (n / 2..=n).map(|k| choose(k) * q.powi(k as i32) * (1.0 - q).powi((n - k) as i32)).sum();
+            let bound = chance(times, n as usize);
+            assert!(tail < bound && bound < 10.0 * tail, "{times}: {tail:e} {bound:e}");
+        }
+        assert_eq!(chance(2.0, 1000), 1.0);
+        assert!(chance(5.0, 31) < FALSE_ALARMS && chance(5.0, 12) > FALSE_ALARMS);
     }
 }
