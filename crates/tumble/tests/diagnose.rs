@@ -69,6 +69,29 @@ fn a_box_that_slides_in_its_turns_misses_nothing_and_hides_nothing() {
     }
 }
 
+/// An accelerometer that slips in its mount by half a degree, this way or that by the last turn: each move ends elsewhere than the
+/// gyroscope says, at random, and left alone that passes for noise of motion.
+#[test]
+fn moves_that_end_at_random_are_something_unknown() {
+    let config = SchemeConfig::realistic(Scheme::MultiPose { poses: 24 }, 3);
+    let (mut recording, _) = made(&config);
+    recording.metadata = Metadata::default();
+    assert_eq!(ask(&recording, &[]).diagnosis.verdict, Verdict::NothingMissing);
+    let mut slipped_rad = 0.0f64;
+    for row in &mut recording.rows {
+        let fastest = row.gyro_dps.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(0.0);
+        if fastest.abs() > 40.0 {
+            slipped_rad = 0.5f64.to_radians().copysign(fastest);
+        }
+        let ([x, y, z], (sin, cos)) = (row.accel_g, slipped_rad.sin_cos());
+        row.accel_g = [cos * x - sin * y, sin * x + cos * y, z];
+    }
+    let diagnosis = ask(&recording, &[]).diagnosis;
+    assert_eq!(diagnosis.verdict, Verdict::UnknownEffect, "{:?} {:?}", diagnosis.effects, diagnosis.reasons);
+    let unknown = diagnosis.unknown.as_ref().expect("something");
+    assert!(unknown.correlates_with.iter().any(|shape| shape.contains("from rest to rest")), "{unknown:?}");
+}
+
 #[test]
 fn g_sensitivity_is_named_with_its_numbers_and_can_be_carried() {
     let (recording, truth) = recording(Scheme::Double, 6, Some("gyro_g_sensitivity=0.08"));

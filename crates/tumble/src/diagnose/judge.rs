@@ -124,7 +124,8 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
     drop_names(bench, selection, &mut judged, dropped);
     one_for_all(bench, selection, &mut judged);
     judged.restless = restless::restless(&bench.twin, &selection.noise);
-    if let Some(restless) = judged.restless.filter(|_| judged.named.is_empty() && !judged.unknown) {
+    let only_walks = judged.named.iter().all(|finding| finding.is_walk);
+    if let Some(restless) = judged.restless.filter(|_| only_walks && !judged.unknown) {
         judged.nameless(restless.p_value, vec![(restless.shape(), -restless.p_value.ln())]);
     }
     // What fell for a shape leaves something unknown too, and a bias that wanders stands for it as well.

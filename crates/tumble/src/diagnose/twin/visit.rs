@@ -53,3 +53,30 @@ impl Visit {
         if turned > NUDGE { Rested::Between } else { Rested::Nudged }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Turned in two steps, nudged by 12°, turned back whole, and turned by half: what the nudge did is nobody's closure.
+    #[test]
+    fn turns_count_from_where_a_nudge_left_the_box() {
+        let degree = PI / 180.0;
+        let at = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle * degree);
+        let (z, mut now) = (Vector3::z(), 0.0);
+        let mut visit = Visit::begin(Face::PlusZ, at(now), 0);
+        let mut by = |visit: &mut Visit, angle: f64| {
+            now += angle;
+            visit.turn(1, angle * degree);
+            visit.rest(&at(now), &z)
+        };
+        assert_eq!(by(&mut visit, 200.0), Rested::Between);
+        let Rested::Closed(left, sign) = by(&mut visit, 159.0) else { panic!("a whole turn") };
+        assert!((left + degree).abs() < 1e-9 && sign == 1.0, "{left} {sign}");
+        assert_eq!(by(&mut visit, 12.0), Rested::Nudged);
+        visit = Visit::begin(Face::PlusZ, at(371.0), 3);
+        let Rested::Closed(left, sign) = by(&mut visit, -360.5) else { panic!("a whole turn") };
+        assert!((left + 0.5 * degree).abs() < 1e-9 && sign == -1.0, "{left} {sign}");
+        assert_eq!(by(&mut visit, 180.0), Rested::Between);
+    }
+}
