@@ -62,6 +62,19 @@ pub fn without_physics(gated: &Gated, why: String) -> Outcome {
     Outcome { diagnosis, exhibits: None }
 }
 
+/// Nothing could be fitted for the samples contradict each other. Unless a gate says why, something is there that nobody knows.
+pub fn broken_down(bench: &Bench, gated: &Gated, origin_s: f64) -> Outcome {
+    let why = "The fit broke down: the samples contradict each other by more than any noise.";
+    let mut outcome = without_physics(gated, why.into());
+    if gated.found.is_empty() {
+        let place = findings::everywhere(bench, origin_s);
+        outcome.diagnosis.verdict = Verdict::UnknownEffect;
+        outcome.diagnosis.unknown =
+            Some(Unknown { place, correlates_with: Vec::new(), resembles: Vec::new(), p_value: 0.0 });
+    }
+    outcome
+}
+
 /// What a gate and the twin both found is one effect: the stronger evidence stands. The strongest first.
 fn merged(mut effects: Vec<Found>, named: Vec<Finding>) -> Vec<Found> {
     for Finding { found, .. } in named {

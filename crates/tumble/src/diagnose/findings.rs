@@ -200,6 +200,11 @@ fn whole_recording(bench: &Bench, first: usize, origin_s: f64) -> Place {
     }
 }
 
+/// All of it.
+pub fn everywhere(bench: &Bench, origin_s: f64) -> Place {
+    Place { channels: CHANNELS.iter().map(ToString::to_string).collect(), ..whole_recording(bench, 0, origin_s) }
+}
+
 /// All that moves, as the gyroscope saw it.
 pub fn moves(bench: &Bench, origin_s: f64) -> Place {
     let moving = bench.twin.stretches.iter().filter(|stretch| !stretch.is_rest());

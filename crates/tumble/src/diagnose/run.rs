@@ -2,7 +2,7 @@
 
 use tumble_core::estimate::Conditions;
 
-use super::answer::{assemble, without_physics};
+use super::answer::{assemble, broken_down, without_physics};
 use super::exhibits;
 use super::findings;
 use super::intake::{Intake, intake, intake_without_moves};
@@ -56,10 +56,7 @@ fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut 
     let mut bench = Bench::new(prepared.twin, &without);
     let selection = select::select(&mut bench, options.seed, progress);
     if !selection.evidence.is_finite() {
-        return without_physics(
-            &gated,
-            "The fit broke down: the samples contradict each other by more than any noise.".into(),
-        );
+        return broken_down(&bench, &gated, origin_s);
     }
     progress("what is left", 0.85);
     let leftover = unknown::left_over(&mut bench);

@@ -63,7 +63,9 @@ pub fn story(diagnosis: &Diagnosis, exhibits: Option<&Exhibits>) -> String {
     if let Some(unknown) = &diagnosis.unknown {
         let label = if diagnosis.effects.is_empty() { "where" } else { "unknown at" };
         story.say(label, &place(&unknown.place, exhibits), 1);
-        story.say("follows", &words::shapes(unknown).join("; "), 2);
+        if !unknown.correlates_with.is_empty() {
+            story.say("follows", &words::shapes(unknown).join("; "), 2);
+        }
         story.say("like", &words::resemblance(unknown), 2);
     }
     fit(&mut story, diagnosis);

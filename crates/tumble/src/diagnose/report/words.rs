@@ -57,8 +57,7 @@ fn unknown(diagnosis: &Diagnosis) -> String {
         Some(shape) => format!("; it follows {shape}."),
         None => ".".into(),
     };
-    let count = diagnosis.detection_limits.len();
-    format!("Something is missing, and it is none of the {count} effects I know{follows}{known}")
+    format!("Something is missing, and it is none of the effects I know{follows}{known}")
 }
 
 fn left(mean_square: f64) -> String {
