@@ -4,8 +4,8 @@ use tumble_core::estimate::Conditions;
 use tumble_core::tape::Kind;
 
 use super::gates::{self, Gated, Scene};
+use super::options::Options;
 use super::prepare::{Prepared, prepare_settled};
-use super::run::Options;
 use super::search::bench::Bench;
 use super::twin::data::Raw;
 use crate::recording::{Inference, Reading, Recording};

@@ -12,6 +12,7 @@ pub mod intake;
 mod judge;
 mod limits;
 mod numbers;
+mod options;
 mod outcome;
 mod posterior;
 pub mod prepare;
@@ -24,5 +25,6 @@ mod settings;
 pub mod transfer;
 pub mod twin;
 
+pub use options::Options;
 pub use outcome::Outcome;
-pub use run::{Options, Progress, diagnose};
+pub use run::{Progress, diagnose};

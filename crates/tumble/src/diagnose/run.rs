@@ -1,12 +1,11 @@
 //! From recording to verdict.
 
-use tumble_core::estimate::Conditions;
-
 use super::answer::{assemble, broken_down, without_physics};
 use super::exhibits;
 use super::findings;
 use super::intake::{Intake, intake, intake_without_moves};
 use super::judge::judge;
+use super::options::Options;
 use super::outcome::Outcome;
 use super::search::bench::Bench;
 use super::search::select;
@@ -16,17 +15,6 @@ use crate::recording::Recording;
 
 /// Found by gates, and yet no distortion of the samples: the physics is to be searched as ever.
 const HARMLESS: [&str; 3] = ["vibration_line", "spin_axis_wobble", "incomplete_turn"];
-
-/// What may be asked for.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// Effects that the search is not to know.
-    pub without: Vec<String>,
-    /// Of the draws that set thresholds.
-    pub seed: u64,
-    /// Table and box, instead of what the recording states.
-    pub conditions: Option<Conditions>,
-}
 
 /// Hears what is being done, and which share of all is done.
 pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;

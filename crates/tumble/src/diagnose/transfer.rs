@@ -4,7 +4,7 @@
 
 use super::diagnosis::{Diagnosis, Found, OtherRecording};
 use super::intake::bench;
-use super::run::Options;
+use super::options::Options;
 use super::search::bench::{Bench, Placed};
 use crate::recording::Recording;
 
