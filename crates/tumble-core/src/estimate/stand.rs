@@ -1,7 +1,7 @@
 //! Which rests stand on the table with their face, and which are poses that happen to lie near one.
 
 use crate::face::Face;
-use crate::motion::path::WHOLE_TURN;
+use crate::motion::path::NUDGE;
 use crate::tape::{Kind, Segment};
 
 /// The face that the rest in segment `index` stands on the table with, for all that is known. Where a session turns the box on a face,
@@ -10,7 +10,7 @@ use crate::tape::{Kind, Segment};
 pub fn standing(segments: &[Segment], index: usize) -> Option<Face> {
     let face = segments.get(index)?.face()?;
     let turned = |segment: &Segment| match segment.kind {
-        Kind::OnTable { face: on, angle_rad } => on == face && libm::fabsf(angle_rad) > 2.0 * WHOLE_TURN,
+        Kind::OnTable { face: on, angle_rad } => on == face && libm::fabsf(angle_rad) > NUDGE,
         _ => false,
     };
     let on_it = |segment: &&Segment| segment.face() == Some(face);

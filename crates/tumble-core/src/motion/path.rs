@@ -15,6 +15,9 @@ use crate::tape::{Kind, Tape};
 const ON_TABLE: f32 = 16.0 * DEGREE_RAD;
 /// A whole turn within this, rad: 3 % of scale (sheet) is 10.8°, and a hand stops to ±2°, three sigma 6°.
 pub const WHOLE_TURN: f32 = 17.0 * DEGREE_RAD;
+/// A turn by less, rad, is no step of a whole one: the box was nudged, or settled, and may have left the fence. Both ends
+/// of a step are uncertain by [`WHOLE_TURN`].
+pub const NUDGE: f32 = 2.0 * WHOLE_TURN;
 
 /// A move as the uncalibrated gyroscope saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,8 +80,7 @@ impl RevolutionCheck {
             *self = Self { face, since_closed_rad: 0.0 };
         }
         self.since_closed_rad += angle_rad;
-        // A nudge or the settling of a box is no attempt at a turn.
-        if libm::fabsf(angle_rad) < 2.0 * WHOLE_TURN {
+        if libm::fabsf(angle_rad) < NUDGE {
             return None;
         }
         // A whole turn counts whatever was left open before it.

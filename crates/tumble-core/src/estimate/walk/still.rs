@@ -10,7 +10,7 @@ use crate::estimate::noise::{self, Noise, ROUNDED};
 use crate::estimate::scatter::scatter;
 use crate::estimate::state::Block;
 use crate::face::Face;
-use crate::motion::path::WHOLE_TURN;
+use crate::motion::path::{NUDGE, WHOLE_TURN};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Record, Segment, Tape};
 
 /// How well a face's contact with the table repeats, rad: 0.25 µm over 5 cm, below all that shows.
@@ -181,7 +181,7 @@ impl<const S: usize> Walk<S> {
                 self.close(&observation, variance);
             }
             // Between a nudge, which may have left the fence, and a whole turn lies a turn made in steps.
-            if turned > 2.0 * WHOLE_TURN {
+            if turned > NUDGE {
                 return;
             }
         }

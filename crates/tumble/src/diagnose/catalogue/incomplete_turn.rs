@@ -80,18 +80,14 @@ fn visits(twin: &Twin) -> Vec<Vec<Turn>> {
         let kept = visit.take();
         let Some(face) = stretch.face().filter(|_| stretch.is_rest()) else { continue };
         let attitude = twin.trajectory.moments[end - 1].attitude;
-        let fresh = || Visit::begin(face, attitude, stretch.number);
-        let mut on = kept.filter(|visit| visit.face == face).unwrap_or_else(fresh);
+        let mut on = kept.filter(|visit| visit.face == face).unwrap_or_else(|| Visit::begin(face));
         match on.rest(&attitude, &(attitude * face.normal().cast::<f64>())) {
             Rested::Closed(_, sign) => {
                 let turn = Turn { last: on.last_turn, end: ended, sign: -sign };
                 visits.last_mut().into_iter().for_each(|turns| turns.push(turn));
             }
             Rested::Between => {}
-            Rested::Nudged => {
-                visits.push(Vec::new());
-                on = fresh();
-            }
+            Rested::First => visits.push(Vec::new()),
         }
         visit = Some(on);
     }

@@ -4,10 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use tumble_core::face::Face;
-use tumble_core::motion::path::WHOLE_TURN;
-
-/// Less than this between two rests, rad, is no step of a turn: the box was nudged, and stands elsewhere.
-const NUDGE: f64 = 2.0 * WHOLE_TURN as f64;
+use tumble_core::motion::path::{NUDGE, WHOLE_TURN};
 
 /// Since the first stop.
 #[derive(Clone, Debug)]
@@ -16,7 +13,7 @@ pub struct Visit {
     pub face: Face,
     /// Stretch of the last turn.
     pub last_turn: usize,
-    first: UnitQuaternion<f64>,
+    first: Option<UnitQuaternion<f64>>,
     turned_rad: f64,
 }
 
@@ -27,14 +24,14 @@ pub enum Rested {
     Closed(f64, f64),
     /// One on the way.
     Between,
-    /// A first stop anew.
-    Nudged,
+    /// From here on turns are counted: the first rest on the face, or the box was nudged and stands elsewhere.
+    First,
 }
 
 impl Visit {
-    /// The box comes to stand on a face, or anew, in `stretch`.
-    pub fn begin(face: Face, first: UnitQuaternion<f64>, stretch: usize) -> Self {
-        Self { face, last_turn: stretch, first, turned_rad: 0.0 }
+    /// The box comes to stand on a face.
+    pub fn begin(face: Face) -> Self {
+        Self { face, last_turn: 0, first: None, turned_rad: 0.0 }
     }
 
     /// It turns in `stretch`.
@@ -45,12 +42,16 @@ impl Visit {
 
     /// It rests at `attitude`, the face's normal being `normal_n` in frame n.
     pub fn rest(&mut self, attitude: &UnitQuaternion<f64>, normal_n: &Vector3<f64>) -> Rested {
-        let left = (attitude * self.first.inverse()).scaled_axis().dot(normal_n);
         let turned = self.turned_rad.abs();
-        if turned > PI && left.abs() < f64::from(WHOLE_TURN) {
-            return Rested::Closed(left, std::mem::take(&mut self.turned_rad).signum());
+        let Some(first) = self.first.filter(|_| turned > f64::from(NUDGE)) else {
+            (self.first, self.turned_rad) = (Some(*attitude), 0.0);
+            return Rested::First;
+        };
+        let left = (attitude * first.inverse()).scaled_axis().dot(normal_n);
+        if turned < PI || left.abs() > f64::from(WHOLE_TURN) {
+            return Rested::Between;
         }
-        if turned > NUDGE { Rested::Between } else { Rested::Nudged }
+        Rested::Closed(left, std::mem::take(&mut self.turned_rad).signum())
     }
 }
 
@@ -64,7 +65,8 @@ mod tests {
         let degree = PI / 180.0;
         let at = |angle: f64| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle * degree);
         let (z, mut now) = (Vector3::z(), 0.0);
-        let mut visit = Visit::begin(Face::PlusZ, at(now), 0);
+        let mut visit = Visit::begin(Face::PlusZ);
+        assert_eq!(visit.rest(&at(now), &z), Rested::First);
         let mut by = |visit: &mut Visit, angle: f64| {
             now += angle;
             visit.turn(1, angle * degree);
@@ -73,8 +75,7 @@ mod tests {
         assert_eq!(by(&mut visit, 200.0), Rested::Between);
         let Rested::Closed(left, sign) = by(&mut visit, 159.0) else { panic!("a whole turn") };
         assert!((left + degree).abs() < 1e-9 && sign == 1.0, "{left} {sign}");
-        assert_eq!(by(&mut visit, 12.0), Rested::Nudged);
-        visit = Visit::begin(Face::PlusZ, at(371.0), 3);
+        assert_eq!(by(&mut visit, 12.0), Rested::First);
         let Rested::Closed(left, sign) = by(&mut visit, -360.5) else { panic!("a whole turn") };
         assert!((left + 0.5 * degree).abs() < 1e-9 && sign == -1.0, "{left} {sign}");
         assert_eq!(by(&mut visit, 180.0), Rested::Between);

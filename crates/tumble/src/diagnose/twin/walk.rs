@@ -224,14 +224,11 @@ impl<'a> Walk<'a> {
         let middle_s = 0.5 * (self.moment(samples.start).t_s + self.moment(samples.end - 1).t_s);
         let kept = self.visit.take().filter(|visit| visit.face == face);
         let fresh = kept.is_none();
-        let mut visit = kept.unwrap_or_else(|| Visit::begin(face, attitude, stretch.number));
+        let mut visit = kept.unwrap_or_else(|| Visit::begin(face));
         match visit.rest(&attitude, &normal_n) {
             Rested::Closed(left, _) => self.close(&visit, left, stretch, &normal_n, middle_s),
             Rested::Between => {}
-            Rested::Nudged => {
-                self.state.clone_heading(&normal_n, self.pass.noise.stop_sigma_rad);
-                visit = Visit::begin(face, attitude, stretch.number);
-            }
+            Rested::First => self.state.clone_heading(&normal_n, self.pass.noise.stop_sigma_rad),
         }
         self.visit = Some(visit);
         if let Some(facet) = self.pass.noise.facet_sigma_rad {

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 use tumble_core::face::Face;
-use tumble_core::motion::path::WHOLE_TURN;
+use tumble_core::motion::path::{NUDGE, WHOLE_TURN};
 use tumble_core::tape::Kind;
 
 use super::Setting;
@@ -63,12 +63,11 @@ fn rested<'a>(
     blocks.extend(facet.map(|facet| plate(rest, face, facet)));
     if let Some(mut visit) = kept {
         let turned = visit.turned_rad.abs();
-        let whole = f64::from(WHOLE_TURN);
-        if turned > PI && left(&unknowns.x, rest, visit.first, face).abs() < whole {
+        if turned > PI && left(&unknowns.x, rest, visit.first, face).abs() < f64::from(WHOLE_TURN) {
             visit.turned_rad = 0.0;
             blocks.push(closure(rest, visit.first, face, visit.stop, sigma));
         }
-        if turned > 2.0 * whole {
+        if turned > f64::from(NUDGE) {
             return visit;
         }
     }
