@@ -32,14 +32,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn image(toolchain: Toolchain) -> Result<PathBuf, Failure> {
     let mut build = toolchain.cargo_for_board("build");
     build.args(["--manifest-path", "emulator/bench-firmware/Cargo.toml"]);
-    let target = match toolchain {
-        Toolchain::Native => {
-            build.args(["--target-dir", "emulator/target/bench"]);
-            "emulator/target/bench"
-        }
-        // Already said, and with it where the library built from source lies.
-        Toolchain::Debian => toolchain.target_folder(),
-    };
     process::run(&mut build)?;
-    Ok(root().join(target).join(TARGET).join("release/bench-firmware"))
+    Ok(toolchain.target().join(TARGET).join("release/bench-firmware"))
 }

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use crate::args::Arguments;
 use crate::firmware::{self, Board};
-use crate::process::{cargo, root, run};
+use crate::process::{cargo, root, run, target};
 use crate::{Failure, toolchain};
 
 /// Path of the firmware's ELF file.
@@ -38,7 +38,8 @@ pub fn image(arguments: &Arguments) -> Result<std::path::PathBuf, Failure> {
 /// Builds and runs one of the emulator's programs, passing on its exit status. The build is apart, so that a build that
 /// fails is told from a story that fails.
 pub fn program(name: &str, image: &Path, words: &[String]) -> Result<(), Failure> {
-    run(cargo_in_emulator("build").args(["--bin", name]))?;
-    let binary = root().join("emulator/target/debug").join(name);
+    let target = target("emulator");
+    run(cargo_in_emulator("build").args(["--bin", name]).arg("--target-dir").arg(&target))?;
+    let binary = target.join("debug").join(name);
     run(Command::new(binary).env(FIRMWARE, image).args(words))
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::Failure;
-use crate::process::{root, run};
+use crate::process::run;
 use crate::toolchain::{TARGET, Toolchain};
 
 /// A board the firmware knows; each is a feature of the root package.
@@ -36,5 +36,5 @@ pub fn selection(board: Board) -> [&'static str; 5] {
 /// Builds it; the path of the image. The image of the board built last stands there, so the Black Pill comes last.
 pub fn build(toolchain: Toolchain, board: Board) -> Result<PathBuf, Failure> {
     run(toolchain.cargo_for_board("build").args(selection(board)))?;
-    Ok(root().join(toolchain.target_folder()).join(TARGET).join("release/tumble-firmware"))
+    Ok(toolchain.target().join(TARGET).join("release/tumble-firmware"))
 }

@@ -9,6 +9,14 @@ pub fn root() -> PathBuf {
     here.parent().unwrap_or(here).to_path_buf()
 }
 
+/// Where a workspace is built: where its owner says (`CARGO_TARGET_DIR`), else in its own `target`. Every build whose product is
+/// looked for afterwards says it, so that no configuration sends the product elsewhere.
+pub fn target(workspace: &str) -> PathBuf {
+    let own = || root().join(workspace).join("target");
+    let said = std::env::var_os("CARGO_TARGET_DIR").filter(|folder| !folder.is_empty());
+    said.map_or_else(own, |folder| std::path::absolute(&folder).unwrap_or_else(|_| folder.into()))
+}
+
 /// The cargo that started this program, so that one toolchain builds everything.
 pub fn cargo() -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))

@@ -1,9 +1,9 @@
-//! Flash and RAM of an image, from its ELF program headers, against what the linker script gives.
+//! Flash and RAM of an image, from its ELF program headers, against what the linker script gives; and what takes the RAM.
 
 use std::path::Path;
 
-use object::elf::{FileHeader32, PT_LOAD};
-use object::read::elf::{FileHeader, ProgramHeader};
+use object::elf::{FileHeader32, PT_LOAD, STT_OBJECT};
+use object::read::elf::{FileHeader, ProgramHeader, Sym};
 use object::{LittleEndian, elf};
 
 use crate::args::Arguments;
@@ -24,6 +24,8 @@ const FLASH_ORIGIN: u64 = 0x0800_0000;
 const FLASH_IMAGE: u64 = 256 * 1024;
 const RAM_ORIGIN: u64 = 0x2000_0000;
 const RAM: u64 = 128 * 1024;
+/// A variable of at least this many bytes is told by its name.
+const LARGE: u64 = 1024;
 
 /// `cargo xtask size`.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -31,6 +33,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for board in Board::ALL.into_iter().rev() {
         let image = firmware::build(toolchain, board)?;
         report(board, &image)?;
+        for (name, bytes) in variables(&image)? {
+            println!("{bytes:>8} bytes of RAM: {name}");
+        }
     }
     Ok(())
 }
@@ -59,16 +64,45 @@ fn percent(part: u64, whole: u64) -> f64 {
 
 /// What is loaded to flash takes its size in the file; what lives in RAM takes its size in memory.
 fn measure(image: &Path) -> Result<Size, Failure> {
-    let unreadable = |error: String| Failure::from(format!("{} cannot be read: {error}", image.display()));
-    let data = std::fs::read(image).map_err(|error| unreadable(error.to_string()))?;
-    let header = FileHeader32::<LittleEndian>::parse(&*data).map_err(|error| unreadable(error.to_string()))?;
-    let endian = LittleEndian;
-    let segments = header.program_headers(endian, &*data).map_err(|error| unreadable(error.to_string()))?;
-    let mut size = Size::default();
-    for segment in segments.iter().filter(|segment| segment.p_type(endian) == PT_LOAD) {
-        add(&mut size, segment, endian);
-    }
-    Ok(size)
+    let data = read(image)?;
+    let sum = |data: &[u8]| {
+        let mut size = Size::default();
+        let segments = FileHeader32::<LittleEndian>::parse(data)?.program_headers(LittleEndian, data)?;
+        for segment in segments.iter().filter(|segment| segment.p_type(LittleEndian) == PT_LOAD) {
+            add(&mut size, segment, LittleEndian);
+        }
+        Ok::<_, object::read::Error>(size)
+    };
+    sum(&data).map_err(|error| unreadable(image, &error))
+}
+
+/// The large variables, the largest first.
+fn variables(image: &Path) -> Result<Vec<(String, u64)>, Failure> {
+    let data = read(image)?;
+    let list = |data: &[u8]| {
+        let header = FileHeader32::<LittleEndian>::parse(data)?;
+        let sections = header.sections(LittleEndian, data)?;
+        let symbols = sections.symbols(LittleEndian, data, elf::SHT_SYMTAB)?;
+        let mut large = Vec::new();
+        for symbol in symbols.iter().filter(|symbol| symbol.st_type() == STT_OBJECT) {
+            let (at, bytes) = (u64::from(symbol.st_value(LittleEndian)), u64::from(symbol.st_size(LittleEndian)));
+            if (RAM_ORIGIN..RAM_ORIGIN + RAM).contains(&at) && bytes >= LARGE {
+                let name = String::from_utf8_lossy(symbol.name(LittleEndian, symbols.strings())?);
+                large.push((format!("{:#}", rustc_demangle::demangle(&name)), bytes));
+            }
+        }
+        large.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
+        Ok::<_, object::read::Error>(large)
+    };
+    list(&data).map_err(|error| unreadable(image, &error))
+}
+
+fn read(image: &Path) -> Result<Vec<u8>, Failure> {
+    std::fs::read(image).map_err(|error| unreadable(image, &error))
+}
+
+fn unreadable(image: &Path, error: &dyn std::fmt::Display) -> Failure {
+    format!("{} cannot be read: {error}", image.display()).into()
 }
 
 fn add(size: &mut Size, segment: &elf::ProgramHeader32<LittleEndian>, endian: LittleEndian) {

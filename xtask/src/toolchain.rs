@@ -4,7 +4,7 @@
 //! compiler new enough (1.96) with its library's sources but no precompiled library for the board: `core` is then built
 //! from source (`-Zbuild-std`, which a stable compiler allows under `RUSTC_BOOTSTRAP=1`) and linked by `ld.lld`.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::Failure;
@@ -98,18 +98,18 @@ impl Toolchain {
             Self::Debian => debian_cargo(),
         };
         command.current_dir(root()).args([subcommand, "--release", "--target", TARGET]);
+        command.arg("--target-dir").arg(self.target());
         if self == Self::Debian {
-            // A folder of its own, so that changing to and fro rebuilds nothing.
-            command.args(["-Zbuild-std=core", "--target-dir", "target/debian"]);
+            command.arg("-Zbuild-std=core");
         }
         command
     }
 
-    /// The folder below the workspace that its builds go to.
-    pub fn target_folder(self) -> &'static str {
+    /// Where its builds go: Debian's to a folder of their own, so that changing to and fro rebuilds nothing.
+    pub fn target(self) -> PathBuf {
         match self {
-            Self::Native => "target",
-            Self::Debian => "target/debian",
+            Self::Native => process::target(""),
+            Self::Debian => process::target("").join("debian"),
         }
     }
 
