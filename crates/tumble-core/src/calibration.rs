@@ -162,6 +162,11 @@ pub enum Reason {
         /// How far a face is from square, one sigma over the faces, rad.
         facet_rad: f32,
     },
+    /// The box leaned differently from rest to rest on one face.
+    LooseContact {
+        /// By how much, one sigma, rad.
+        lean_rad: f32,
+    },
     /// A segment was left out because it does not fit the rest.
     SegmentExcluded {
         /// Index as in the segment list.

@@ -6,7 +6,7 @@
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-use super::facets::SQUARE;
+use super::facets::{CONTACT, SQUARE};
 use super::model::Nominal;
 use super::noise::{Noise, PIVOT_FLOOR};
 use super::prior::{self, CORRECTION_SIGMA};
@@ -234,6 +234,7 @@ impl<const S: usize> Estimator<S> {
             let (found, crooked) = self.walk.pass.facets.variance(*sigma, shear).unwrap_or((SQUARE * SQUARE, false));
             damp(sigma, libm::sqrtf(found), &mut self.facet_step);
             self.noise.crooked = crooked;
+            self.noise.contact_sigma_rad = self.walk.pass.facets.contact().map_or(CONTACT, libm::sqrtf);
         }
     }
 

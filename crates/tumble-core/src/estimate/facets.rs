@@ -8,18 +8,22 @@
 //! ρ and p are one where `R (n × ρ)` is the same for all six faces. With headings that are multiples of 90° that happens for a ρ along
 //! a space diagonal, whose horizontal part every face has at one of four headings: 4 diagonals, 4 common directions, 4⁶ headings, once in
 //! 256 sessions. Only turns tell them apart then (`model::plate_in_turn`), in which e is therefore a state.
+//!
+//! On a soft or uneven surface the box leans otherwise at each rest. Rests of one visit at one heading have all of the above in common
+//! and differ by that alone.
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::likelihood::{CERTAIN, Likelihood};
 use super::normal::{Normal, mean_variance};
+use crate::motion::path::WHOLE_TURN;
 
 /// A face of a box that its owner calls square, rad: 0.5 µm on 5 cm.
 pub const SQUARE: f32 = 5e-6;
+/// How well a face's contact with a firm, even table repeats, rad: 0.25 µm over 5 cm, below all that shows.
+pub const CONTACT: f32 = 5e-6;
 /// The grid's sigmas grow by √2 from there, to 41 mrad (2.4°).
 const GRID: usize = 25;
-/// Twice the logarithm of the likelihood's ratio from which a box is said not to be square: ½χ²₁ exceeds it once in a thousand
-/// sessions.
-const CERTAIN: f32 = 9.55;
 /// Unknowns: table 2 and frame 3, then shear 3.
 const TABLE_AND_FRAME: usize = 5;
 const UNKNOWNS: usize = 8;
@@ -36,6 +40,7 @@ pub struct Facets {
     noise: f32,
     count: f32,
     visit: Option<Visit>,
+    contact: Likelihood,
 }
 
 /// A stay on one face: its normal, the attitude at the first rest, sums over rests of the normal in frame n and of its variance.
@@ -56,8 +61,9 @@ impl Facets {
     }
 
     /// A rest on a face, whose normal in frame n the levelled attitude has with a variance of `noise` a component. `anew`: the face came to
-    /// lie on the table since the last rest.
-    pub fn take(&mut self, anew: bool, normal_b: &Vector3<f32>, to_n: &Matrix3<f32>, noise: f32) {
+    /// lie on the table since the last rest. `sigmas`: of a face and of its contact, as they are in force.
+    pub fn take(&mut self, anew: bool, normal_b: &Vector3<f32>, to_n: &Matrix3<f32>, noise: f32, sigmas: [f32; 2]) {
+        let [facet, contact] = sigmas.map(|sigma| sigma * sigma);
         if anew {
             self.end_visit();
         }
@@ -66,9 +72,22 @@ impl Facets {
         let left = normal_n - *self.first.get_or_insert(normal_n);
         let new = Visit { normal_b: *normal_b, to_n: *to_n, sum: Vector3::zeros(), noise: 0.0, rests: 0.0 };
         let visit = self.visit.get_or_insert(new);
+        let along_b = normal_b.yzx();
+        let turned = (to_n * along_b - visit.to_n * along_b).norm_squared();
+        if visit.rests > 0.0 && turned < WHOLE_TURN * WHOLE_TURN {
+            // Less the mean of those before it; scaled to the variance of one.
+            let scale = libm::sqrtf(visit.rests / (visit.rests + 1.0));
+            let apart = (left - visit.sum / visit.rests).xy() * scale;
+            apart.iter().for_each(|value| self.contact.take(*value, noise + facet * turned, CONTACT));
+        }
         visit.sum += left;
-        visit.noise += noise;
+        visit.noise += noise + contact;
         visit.rests += 1.0;
+    }
+
+    /// Variance by which a face's contact with the table differs from rest to rest, rad², if it certainly does.
+    pub fn contact(&self) -> Option<f32> {
+        self.contact.mean(CONTACT).filter(|_| self.contact.is_certain())
     }
 
     fn end_visit(&mut self) {

@@ -91,6 +91,9 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     if let Some(facet_rad) = estimate.noise.crookedness_rad() {
         bench.warn(Reason::CrookedBox { facet_rad });
     }
+    if let Some(lean_rad) = estimate.noise.lean_rad() {
+        bench.warn(Reason::LooseContact { lean_rad });
+    }
     for segment in tape.segments().iter().filter(|segment| segment.exclusion == Exclusion::Clipped) {
         let channel = segment.clipped.trailing_zeros() as u8;
         bench.warn(Reason::Clipped { channel, samples: u32::from(segment.clipped_samples) });

@@ -4,6 +4,8 @@ use super::normal::mean_variance;
 
 /// Steps of the grid: from the least variance by factors of two, to 5800 times its sigma.
 const GRID: usize = 26;
+/// Twice the logarithm of the likelihoods' ratio from which there certainly is something: ½χ²₁ exceeds it once in a thousand sessions.
+pub const CERTAIN: f32 = 9.55;
 
 /// `−2 ln L` of each variance of a grid, in units of its least.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,6 +36,11 @@ impl Likelihood {
         if share > 0.01 {
             self.take(mean / share, (variance / share).min(loose), least);
         }
+    }
+
+    /// Is there certainly more than the grid's least?
+    pub fn is_certain(&self) -> bool {
+        self.costs[0] - self.costs.iter().fold(f32::INFINITY, |least, cost| least.min(*cost)) > CERTAIN
     }
 
     /// Mean of the posterior; none without data. As often as not there is nothing that shows.

@@ -4,7 +4,7 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 use super::drift::Slope;
-use super::facets::SQUARE;
+use super::facets::{CONTACT, SQUARE};
 use super::scatter::{pooled, scatter};
 use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
@@ -33,6 +33,9 @@ const FENCED: f32 = 0.05 * DEGREE_RAD;
 const PIVOT: f32 = 5e-3;
 /// The least that a pivot moves by, m.
 pub const PIVOT_FLOOR: f32 = 50e-6;
+/// Least fault of a box or a table that a person is told of, rad (0.005°). A sensor ten times as quiet as the sheet's sees some 40 µrad,
+/// which no person can mend and no two digits can say.
+const LEAST_TOLD_RAD: f32 = 87e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 pub(super) const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
@@ -63,6 +66,8 @@ pub struct Noise {
     pub pivot_sigma_m: f32,
     /// One face of the box, rad; none where it is not known to be square.
     pub facet_sigma_rad: Option<f32>,
+    /// How well a face's contact with the table repeats from rest to rest, rad.
+    pub contact_sigma_rad: f32,
     /// Are faces certain not to be square?
     pub crooked: bool,
     /// How far the face that a turn is made on leaves the table during the turn, rad: what turns with the box …
@@ -108,6 +113,7 @@ impl Noise {
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
+            contact_sigma_rad: CONTACT,
             crooked: false,
             facet_sigma_rad: (faces == BoxFaces::Square).then_some(SQUARE),
             wobble_sigma_rad: UNSEEN,
@@ -135,6 +141,7 @@ impl Noise {
                 noise.stop_sigma_rad,
                 noise.pivot_sigma_m,
                 facet,
+                noise.contact_sigma_rad,
                 noise.wobble_sigma_rad,
                 noise.rocking_sigma_rad,
             ]
@@ -152,11 +159,14 @@ impl Noise {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
     }
 
-    /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the
-    /// sheet's sees some 40 µrad, which no person can mend and no two digits can say: 0.005° is the least that is told.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        const LEAST_RAD: f32 = 87e-6;
-        self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_RAD)
+        self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_TOLD_RAD)
+    }
+
+    /// By how much the box leaned differently from rest to rest on one face, rad, if it certainly did.
+    pub fn lean_rad(&self) -> Option<f32> {
+        Some(self.contact_sigma_rad).filter(|sigma| *sigma > LEAST_TOLD_RAD)
     }
 
     /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean

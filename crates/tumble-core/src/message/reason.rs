@@ -20,6 +20,7 @@ impl Reason {
             Self::Uncertain { .. } => "uncertain",
             Self::BiasDrift { .. } => "bias_drift",
             Self::CrookedBox { .. } => "crooked_box",
+            Self::LooseContact { .. } => "loose_contact",
             Self::SegmentExcluded { .. } => "segment_excluded",
             Self::SamplesLost { .. } => "samples_lost",
             Self::Arithmetic { .. } => "arithmetic",
@@ -77,6 +78,12 @@ impl Display for Reason {
                 "The box was called square, but its faces are {:.2} degrees off: the axes are only as true as that. Calibrate \
                  again without \"square\", or with a better box.",
                 degrees(*facet_rad)
+            ),
+            Self::LooseContact { lean_rad } => write!(
+                f,
+                "The box leaned {:.2} degrees differently from rest to rest on the same face, which makes axes less certain. \
+                 Use a firm, even table.",
+                degrees(*lean_rad)
             ),
             Self::SegmentExcluded { segment, nis_per_dof } => write!(
                 f,

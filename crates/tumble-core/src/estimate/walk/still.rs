@@ -13,9 +13,7 @@ use crate::face::Face;
 use crate::motion::path::{NUDGE, WHOLE_TURN};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Record, Segment, Tape};
 
-/// How well a face's contact with the table repeats, rad: 0.25 µm over 5 cm, below all that shows.
-const CONTACT_SIGMA: f32 = 5e-6;
-/// … and at least what it is taken for as a share of the prior's sigma: `f32` resolves a 6e-8th of a variance, which is 15 µrad
+/// A face's contact with the table is taken for no better than this share of the prior's sigma: `f32` resolves a 6e-8th of a variance, which is 15 µrad
 /// beside 0.06, and thirty roundings' worth of that is 80.
 const RESOLVED: f32 = 1.0 / 600.0;
 /// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
@@ -145,12 +143,13 @@ impl<const S: usize> Walk<S> {
         let to_n = self.pass.attitude.to_rotation_matrix().into_inner();
         // A bias that walks is off by q T/6 about its own mean, which leans what is levelled by it.
         let walked = noise.force_walk * self.pass.session_s / (6.0 * self.gravity * self.gravity);
-        self.pass.facets.take(anew, &face.normal(), &to_n, self.pass.level_variance + walked);
+        let level = self.pass.level_variance + walked;
+        self.pass.facets.take(anew, &face.normal(), &to_n, level, [sigma, noise.contact_sigma_rad]);
         if anew {
             (0..2).for_each(|axis| self.filter.reset(Block::Facet, axis, 0.0, sigma));
         }
         let plane = face.plane().map(|axis| self.pass.attitude * axis);
-        let contact = CONTACT_SIGMA.max(RESOLVED * self.pass.width);
+        let contact = noise.contact_sigma_rad.max(RESOLVED * self.pass.width);
         let variance = contact * contact;
         if !self.pass.plated {
             return;

@@ -9,8 +9,8 @@ const FENCE_CAP_RAD: f64 = 0.3 * std::f64::consts::PI / 180.0;
 pub const LEVER_SIGMA_M: f64 = 1.2e-2;
 /// How far a turn's axis is from where other turns have it, m.
 pub const PIVOT_SIGMA_M: f64 = 5e-3;
-/// A face of a square box, rad: 1 µm on 5 cm, and contact that repeats as well.
-pub const CONTACT_SIGMA_RAD: f64 = 30e-6;
+/// How well a face's contact with a firm table repeats, rad: 1.5 µm on 5 cm.
+const CONTACT_RAD: f64 = 30e-6;
 
 /// Densities and sigmas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +31,8 @@ pub struct Noise {
     pub stop_sigma_rad: f64,
     /// rad; none where the box is not known to be square.
     pub facet_sigma_rad: Option<f64>,
+    /// How well a face's contact with the table repeats from rest to rest, rad.
+    pub contact_sigma_rad: f64,
     /// How far a turn's axis is from where other turns have it, m.
     pub pivot_sigma_m: f64,
     /// How a hand pushes the box about in a turn: its horizontal acceleration over gravity, 1. A Gauss–Markov process of time constant
@@ -93,6 +95,7 @@ impl Noise {
                 self.stop_sigma_rad
             },
             facet_sigma_rad: self.facet_sigma_rad.map(|sigma| sigma.min(SQUARE_RAD)),
+            contact_sigma_rad: CONTACT_RAD,
             motion_scale: 1.0,
             slide_rad: 0.0,
             ..*self
@@ -112,6 +115,7 @@ impl Noise {
             motion_scale: f64::from(device.motion_scale).max(1.0),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
+            contact_sigma_rad: f64::from(device.contact_sigma_rad).max(CONTACT_RAD),
             pivot_sigma_m: PIVOT_SIGMA_M,
             slide_rad: 0.0,
         }

@@ -265,7 +265,7 @@ impl<'a> Walk<'a> {
         let cross = normal_n.cross_matrix();
         let (columns, late) = (self.columns, self.alternating());
         for axis in 0..2 {
-            let observation = Observation::new(normal_n[axis], noise::CONTACT_SIGMA_RAD.powi(2))
+            let observation = Observation::new(normal_n[axis], self.pass.noise.contact_sigma_rad.powi(2))
                 .with(state::ATTITUDE, cross.row(axis).iter().copied())
                 .with(state::TABLE + axis, [1.0])
                 .with(state::FACET, [-along(1)[axis], -along(2)[axis]]);

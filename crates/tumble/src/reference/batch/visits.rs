@@ -10,9 +10,6 @@ use super::Setting;
 use super::unknowns::{Rest, Unknowns};
 use crate::reference::solve::Block;
 
-/// How well a face's contact with the table repeats, rad: the device's.
-const CONTACT_SIGMA: f64 = 5e-6;
-
 /// A stay on one face.
 struct Visit {
     face: Face,
@@ -60,7 +57,8 @@ fn rested<'a>(
         Some(visit) => visit.facet,
         None => setting.noise.facet_sigma_rad.map(|sigma| unknowns.add_with_prior(2, f64::from(sigma))),
     };
-    blocks.extend(facet.map(|facet| plate(rest, face, facet)));
+    let contact = f64::from(setting.noise.contact_sigma_rad);
+    blocks.extend(facet.map(|facet| plate(rest, face, facet, contact)));
     if let Some(mut visit) = kept {
         let turned = visit.turned_rad.abs();
         if turned > PI && left(&unknowns.x, rest, visit.first, face).abs() < f64::from(WHOLE_TURN) {
@@ -75,14 +73,14 @@ fn rested<'a>(
 }
 
 /// `(R (n + e))ₓᵧ = p`.
-fn plate<'a>(rest: Rest, face: Face, facet: usize) -> Block<'a> {
+fn plate<'a>(rest: Rest, face: Face, facet: usize, contact: f64) -> Block<'a> {
     let depends = rest.all().take(3).chain(facet..facet + 2).chain(rest.table..rest.table + 2);
     Block::new(depends, move |x| {
         let mut normal: Vector3<f64> = face.normal().cast();
         normal[(face.axis() + 1) % 3] += x[facet];
         normal[(face.axis() + 2) % 3] += x[facet + 1];
         let normal = rest.rotation(x) * normal;
-        (0..2).map(|axis| (normal[axis] - x[rest.table + axis]) / CONTACT_SIGMA).collect()
+        (0..2).map(|axis| (normal[axis] - x[rest.table + axis]) / contact).collect()
     })
 }
 
