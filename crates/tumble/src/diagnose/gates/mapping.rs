@@ -4,7 +4,7 @@
 //! over and as the accelerometer finds it, in sigmas of sheet errors (3° of direction, 5 % of what was turned): χ² of 48 signed
 //! permutations times nine factors. On a clean recording the identity's χ² is below one a pair. The gate wants at once: the
 //! identity worse than 9 a pair (three sigmas in the mean of all pairs), another below 4 a pair, better by 2·ln(432) +
-//! 2·11.5 = 35 than the identity, and no other within 6 of it when every slip
+//! 2·11.5 = 35 than the identity, and no other within 6 of it in −2 ln of the likelihood when every slip
 //! (exchange, reversal, factor) costs 6 to 12. With two pairs and sheet errors as sigmas the first
 //! alone has e⁻⁹; with the second, e⁻¹⁷ and less.
 //!
@@ -118,7 +118,7 @@ fn force_factor(view: &View) -> Option<f64> {
 fn decisive(pairs: &[Pair]) -> Option<(Guess, f64)> {
     let mut all: Vec<Guess> = FACTORS.iter().flat_map(|factor| guesses(pairs, *factor)).collect();
     let identity = all[0];
-    let cost = |guess: &Guess| guess.chi2 + unlikely(guess);
+    let cost = |guess: &Guess| guess.chi2 + guess.loose + unlikely(guess);
     all.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
     let (best, count) = (all[0], pairs.len() as f64);
     let gain = 0.5 * (identity.chi2 - best.chi2) - (all.len() as f64).ln();

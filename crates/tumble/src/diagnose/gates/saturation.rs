@@ -9,6 +9,10 @@
 //! rounding alone scatters, so that a constant reading is not just rounding.
 //! Or (3) *the rail*: two readings at the end (0.2 %) of a range that is stated or shown by its step.
 //!
+//! A filter behind the converter swings past the level where it enters and leaves it, and settles on it between: where the extreme itself
+//! is no such level, the one below it, within [`SWING`], that most readings in long runs stand at is asked for pile-up, at the price of all
+//! levels that there are.
+//!
 //! A level that all readings of a sensor at rest could reach by its own offset is a level like any other.
 
 use std::ops::Range;
@@ -28,6 +32,9 @@ const IMITATED_ACCEL: &[&str] = &["accel_cubic", "accel_quadratic"];
 const LEAST_S: [f64; 2] = [0.015, 0.04];
 /// −ln of how often noise alone may make as long a run of equal readings at a peak: 1e-3, beside the overshoot's own chance.
 const LN_EQUAL: f64 = 7.0;
+/// Most that a filter swings past a level, as a share of it: a second-order Butterworth does by 4 % of a step, and a rate enters by a
+/// ramp.
+const SWING: f64 = 0.04;
 /// What the parabola is fitted to, s; it is drawn on for a quarter of that.
 const FIT_S: f64 = 0.08;
 
@@ -111,9 +118,7 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let top = values.iter().fold(f64::NEG_INFINITY, |max, v| max.max(sign * v));
     let step = view.step[channel];
     let noise = if view.sigma[channel].is_finite() { view.sigma[channel] } else { 10.0 * step };
-    // Text decimals blur one level by less than a tenth of a step.
-    let at = |i: usize| sign * values[i] > top - 0.1 * step - 1e-9;
-    let samples: Vec<usize> = (0..values.len()).filter(|i| at(*i)).collect();
+    let samples: Vec<usize> = (0..values.len()).filter(|i| sign * values[*i] > top - blur(step)).collect();
     if top <= 0.0 && samples.len() < 100 || top.abs() < 20.0 * noise {
         return None;
     }
@@ -124,13 +129,49 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let long: Vec<&Range<usize>> = runs.iter().filter(|run| fresh(run) >= least).collect();
     let margin = 8.0 * noise + 2.0 * step;
     let overshoots = long.iter().filter(|run| overshoots(view, values, run, sign, top + margin)).count();
-    let next = values.iter().filter(|v| (top - 3.5 * step..top - 0.1 * step - 1e-9).contains(&(sign * **v))).count();
-    let pile = samples.len() as f64;
     let fine = noise > coarse::LEAST_RATIO * step && noise > 0.0;
-    let ln_p = if fine && !long.is_empty() { ln_coin_tail(pile, pile + next as f64) } else { 0.0 };
+    let ln_p = if fine && !long.is_empty() { ln_pile(values, sign, top, step) } else { 0.0 };
     let rail = if at_rail(view, channel, top) && samples.len() >= 2 { 15.0 } else { 0.0 };
     let evidence = 15.0 * overshoots as f64 - ln_p + rail;
-    (overshoots > 0 || ln_p < LN_ALARM || rail > 0.0).then_some(Flat { channel, level: sign * top, samples, evidence })
+    if overshoots > 0 || ln_p < LN_ALARM || rail > 0.0 {
+        return Some(Flat { channel, level: sign * top, samples, evidence });
+    }
+    if !fine || top <= 0.0 {
+        return None;
+    }
+    let level = filtered(values, stale, sign, top, step, least)?;
+    let ln_p = ln_pile(values, sign, level, step) + (SWING * top / step).max(1.0).ln();
+    let samples = || (0..values.len()).filter(|i| sign * values[*i] > level - blur(step)).collect();
+    (ln_p < LN_ALARM).then(|| Flat { channel, level: sign * level, samples: samples(), evidence: -ln_p })
+}
+
+/// Text decimals blur one level by less than a tenth of a step.
+fn blur(step: f64) -> f64 {
+    0.1 * step + 1e-9
+}
+
+/// Probability that so many more readings stand at a level than in all of the next three steps below it.
+fn ln_pile(values: &[f64], sign: f64, level: f64, step: f64) -> f64 {
+    let count = |range: Range<f64>| values.iter().filter(|v| range.contains(&(sign * **v))).count() as f64;
+    let (pile, next) = (count(level - blur(step)..level + blur(step)), count(level - 3.5 * step..level - blur(step)));
+    ln_coin_tail(pile, pile + next)
+}
+
+/// The level within a filter's swing below the extreme that most readings, in runs of at least so many alike, stand at.
+fn filtered(values: &[f64], stale: &[usize], sign: f64, top: f64, step: f64, least: usize) -> Option<f64> {
+    let near: Vec<usize> = (0..values.len()).filter(|i| sign * values[*i] > (1.0 - SWING) * top).collect();
+    let alike = |a: &usize, b: &usize| a + 1 == *b && (values[*a] - values[*b]).abs() < blur(step);
+    let mut levels: Vec<(f64, usize)> = Vec::new();
+    for run in near.chunk_by(alike) {
+        let fresh = run.iter().filter(|i| stale.binary_search(i).is_err()).count();
+        let level = sign * values[run[0]];
+        match levels.iter_mut().find(|(known, _)| (known - level).abs() < blur(step)) {
+            _ if fresh < least => {}
+            Some((_, count)) => *count += fresh,
+            None => levels.push((level, fresh)),
+        }
+    }
+    levels.into_iter().max_by_key(|(_, count)| *count).map(|(level, _)| level)
 }
 
 /// Readings in a row that are no accident. Two of noise σ are equal with p = Δ/(2√π σ), so that n in a row have pⁿ⁻¹; a hand's
