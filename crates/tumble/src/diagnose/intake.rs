@@ -1,6 +1,7 @@
 //! A recording through the gates, what they repair and mask, and its twin: how every diagnosis and every trial begins.
 
-use tumble_core::estimate::Conditions;
+use tumble_core::calibration::Reason;
+use tumble_core::estimate::{Conditions, judge};
 use tumble_core::tape::Kind;
 
 use super::gates::{self, Gated, Scene};
@@ -9,7 +10,7 @@ use super::prepare::{Prepared, prepare_settled};
 use super::search::bench::Bench;
 use super::twin::data::Raw;
 use crate::recording::{Inference, Reading, Recording};
-use crate::settle::{self, Session};
+use crate::settle::{self, Session, Settled};
 
 /// What came of it.
 pub struct Intake {
@@ -19,6 +20,8 @@ pub struct Intake {
     pub conditions: Conditions,
     /// The twin, or in words why there is none.
     pub prepared: Result<Prepared, String>,
+    /// What the estimator says of box, table and sensor, in sentences: the nominal model allows for it.
+    pub remarks: Vec<String>,
 }
 
 /// Takes a recording in.
@@ -53,7 +56,7 @@ fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bo
     let gated = gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments });
     if let Some(stop) = &gated.stop {
         let prepared = Err(stop.clone());
-        return Intake { gated, conditions, prepared };
+        return Intake { gated, conditions, prepared, remarks: Vec::new() };
     }
     let mut masked = masked(&gated);
     if without_moves {
@@ -64,8 +67,25 @@ fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bo
         repair(&mut samples, &mut readings, &gated);
         settled = Session { readings: &readings, origin_s, lost, conditions }.settle(&mut |_| {});
     }
+    let remarks = remarks(&settled, lost);
     let prepared = prepare_settled(samples, &settled, conditions, &masked).map_err(|why| why.0);
-    Intake { gated, conditions, prepared }
+    Intake { gated, conditions, prepared, remarks }
+}
+
+/// What the estimator found that is nobody's physics, but nothing that a person should not hear of: its numbers absorb it.
+fn remarks(settled: &Settled, lost: u32) -> Vec<String> {
+    let Ok((estimate, _)) = &settled.estimate else { return Vec::new() };
+    let reasons = judge::judge(estimate, &settled.tape, lost).0.reasons;
+    let mut remarks = Vec::new();
+    for reason in &reasons {
+        let more = match reason {
+            Reason::CrookedBox { .. } => " A table whose tilt changed between two faces would look much like it.",
+            Reason::LooseContact { .. } | Reason::OutOfRange { .. } => "",
+            _ => continue,
+        };
+        remarks.push(format!("The nominal model allows for this: {reason}{more}"));
+    }
+    remarks
 }
 
 /// Segments whose readings are bounds or knocks: their rotation and force are lost.

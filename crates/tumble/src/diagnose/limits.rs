@@ -6,9 +6,12 @@ use super::diagnosis::Limit;
 use super::gates::chance::shift_seen;
 use super::judge::BESIDE_GATES;
 use super::search::bench::{Bench, Candidate, HEALTHY, with_walks};
-use super::search::ledger::Ledger;
+use super::search::ledger::{Ledger, Term};
 use super::search::select::Selection;
 use super::twin::noise::walk_floor;
+
+/// Where the worst limit is above this many times the median, it is said.
+const UNEVEN: f64 = 3.0;
 
 /// What the recording could have shown, with 95 % certainty, by the threshold in force.
 ///
@@ -16,17 +19,27 @@ use super::twin::noise::walk_floor;
 /// 100 µg in 100 s, so that what it can excuse is no evidence. (At the noise of a quiet recording, limits of what is slow came
 /// out at half of what was found in truth.)
 ///
+/// Beside what was found: a bias that wanders is noise to all else, and what another effect's columns explain of a candidate's is no
+/// evidence for it. (By the null's noise a sensitivity to force at twice its limit was missed beside a walk, three times of five.)
+///
 /// `beside_gates`: names need the odds that no trace of a distorted sample reaches, and no walk is named.
 pub fn limits(bench: &mut Bench, selection: &Selection, beside_gates: bool) -> Vec<Limit> {
     let kept = bench.twin.noise;
     let most = HEALTHY[HEALTHY.len() - 1];
-    let rows = bench.rows(with_walks(&selection.null_noise, most, most));
+    let noise = if bench.accepted.is_empty() { selection.null_noise } else { selection.noise };
+    let rows = bench.rows(bench.with_accepted_walks(&with_walks(&noise, most, most), &[]));
     bench.twin.noise = kept;
     let ledger = Ledger::new(&rows, |_| true);
     let bench = &*bench;
+    let scales =
+        if bench.accepted.is_empty() { selection.null_scales } else { ledger.fit(&bench.accepted_terms(&[])).scales };
     let needed = if beside_gates { selection.threshold.max(BESIDE_GATES) } else { selection.threshold };
-    let asked = Asked { scales: &selection.null_scales, needed, beside_gates };
-    bench.candidates.iter().map(|candidate| limit(candidate, &asked, &ledger)).collect()
+    let limit_of = |(index, candidate): (usize, &Candidate)| {
+        let itself: Vec<usize> = (0..bench.accepted.len()).filter(|k| bench.accepted[*k].candidate == index).collect();
+        let asked = Asked { scales: &scales, needed, beside_gates, beside: bench.accepted_terms(&itself) };
+        limit(candidate, &asked, &ledger)
+    };
+    bench.candidates.iter().enumerate().map(limit_of).collect()
 }
 
 /// One an effect, where a gate and the twin can both show it: the finer.
@@ -48,6 +61,8 @@ struct Asked<'a> {
     /// ln of the odds.
     needed: f64,
     beside_gates: bool,
+    /// Found as well.
+    beside: Vec<Term>,
 }
 
 fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
@@ -70,17 +85,19 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
         let limit = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
     }
-    // The median over parameters and variants.
+    // The median over parameters and variants: axes and, of what begins at some time, times.
     let mut limits = limits_alone(candidate, asked, ledger);
     limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(&(limit, width, unit)) = limits.get(limits.len() / 2) else {
+    let (Some(&(limit, width, unit)), Some(&(worst, ..))) = (limits.get(limits.len() / 2), limits.last()) else {
         return none("nothing in this recording depends on it", "");
     };
     let testable = limit < 10.0 * width;
-    let why = if testable {
-        String::new()
-    } else {
-        format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}")
+    let why = match () {
+        () if !testable => format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}"),
+        () if worst > UNEVEN * limit => {
+            format!("for half of all axes and times; {worst:.2} {unit} where it shows least")
+        }
+        () => String::new(),
     };
     Limit { id, limit, unit: unit.into(), testable, why }
 }
@@ -90,7 +107,7 @@ fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f
     let mut limits = Vec::new();
     for placed in &candidate.variants {
         let columns: Vec<usize> = placed.columns.clone().collect();
-        let information = ledger.gram(asked.scales, &columns, &columns);
+        let information = information(ledger, asked, &columns);
         let widths = DVector::from_fn(columns.len(), |i, _| placed.parameters[i].width);
         let prior = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
             information[(i, j)] * widths[i] * widths[j] + if i == j { 1.0 } else { 0.0 }
@@ -104,6 +121,16 @@ fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f
         }
     }
     limits
+}
+
+/// What the rows say of some columns where those beside are free within their priors: `I − C (B + W⁻²)⁻¹ Cᵀ`.
+fn information(ledger: &Ledger, asked: &Asked, columns: &[usize]) -> DMatrix<f64> {
+    let own = ledger.gram(asked.scales, columns, columns);
+    let beside: Vec<usize> = asked.beside.iter().map(|term| term.column).collect();
+    let mut theirs = ledger.gram(asked.scales, &beside, &beside);
+    asked.beside.iter().enumerate().for_each(|(i, term)| theirs[(i, i)] += term.width.powi(-2));
+    let shared = ledger.gram(asked.scales, columns, &beside);
+    theirs.cholesky().map_or(own.clone(), |factor| &own - &shared * factor.solve(&shared.transpose()))
 }
 
 #[cfg(test)]

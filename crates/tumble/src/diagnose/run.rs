@@ -1,6 +1,7 @@
 //! From recording to verdict.
 
 use super::answer::{assemble, broken_down, without_physics};
+use super::diagnosis::Verdict;
 use super::exhibits;
 use super::findings;
 use super::intake::{Intake, intake, intake_without_moves};
@@ -34,7 +35,7 @@ pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progres
 
 fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut Progress) -> Outcome {
     let origin_s = recording.origin_s();
-    let Intake { gated, conditions, prepared } = taken;
+    let Intake { gated, conditions, prepared, remarks } = taken;
     let prepared = match prepared {
         Ok(prepared) => prepared,
         Err(why) => return without_physics(&gated, why),
@@ -55,6 +56,10 @@ fn look(recording: &Recording, taken: Intake, options: &Options, progress: &mut 
     }
     progress("report", 0.95);
     let exhibits = exhibits::exhibits(&bench, &selection, &judged.named, &leftover, origin_s);
-    let diagnosis = assemble(&mut bench, &selection, &leftover, judged, gated, conditions, origin_s);
+    let mut diagnosis = assemble(&mut bench, &selection, &leftover, judged, gated, conditions, origin_s);
+    // Beside an effect they would tell of the effect, which the estimator did not know.
+    if diagnosis.verdict == Verdict::NothingMissing {
+        diagnosis.reasons.extend(remarks);
+    }
     Outcome { diagnosis, exhibits: Some(exhibits) }
 }

@@ -57,10 +57,10 @@ pub fn examine(view: &View) -> Outcome {
             continue;
         }
         let burst = burst(view, &rough, index);
-        if let Some((peak, over)) = knock(view, &rough, &burst) {
-            knocks.push((burst.clone(), peak, over));
-        }
-        index = burst.end;
+        let knock = knock(view, &rough, &burst);
+        // What is rough for long may have a knock in it.
+        index = if knock.is_some() { burst.end } else { index + 1 };
+        knocks.extend(knock.map(|(peak, over)| (burst, peak, over)));
     }
     if let Some((strongest, peak, over)) = knocks.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
         let start_s = view.scene.recording.origin_s() + view.t_s[strongest.start];
@@ -98,11 +98,19 @@ fn roughness(view: &View) -> Vec<f64> {
     squares.into_iter().map(f64::sqrt).collect()
 }
 
-/// From the first sample beyond the limit to the last before 30 ms of calm.
+/// 30 ms.
+fn calm(view: &View) -> usize {
+    view.count(0.03).max(2)
+}
+
+/// The samples above a tenth of the peak, to the last before 30 ms of calm. A turn may be rougher all along than the limit: what comes first
+/// above that is not where a knock begins.
 fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
-    let calm = view.count(0.03).max(2);
+    let calm = calm(view);
     let ahead = &rough[start..(start + view.count(0.5)).min(rough.len())];
     let peak = ahead.iter().take(calm + view.count(LONGEST_S)).fold(0.0_f64, |max, v| max.max(*v));
+    let start = start + ahead.iter().position(|value| *value > 0.1 * peak).unwrap_or(0);
+    let ahead = &rough[start..(start + view.count(0.5)).min(rough.len())];
     let mut end = start + 1;
     for (i, value) in (start..).zip(ahead) {
         if *value > 0.1 * peak {
@@ -117,10 +125,14 @@ fn burst(view: &View, rough: &[f64], start: usize) -> Range<usize> {
 /// Its peak and how many times the surrounding rms that is, if it is a knock.
 fn knock(view: &View, rough: &[f64], burst: &Range<usize>) -> Option<(f64, f64)> {
     let length_s = burst.len() as f64 * view.dt_s;
-    if !is_shared(view, burst) || length_s > LONGEST_S.max(3.5 * view.dt_s) {
+    if length_s > LONGEST_S.max(3.5 * view.dt_s) || !is_shared(view, burst) {
         return None;
     }
     let peak = rough[burst.clone()].iter().fold(0.0_f64, |max, v| max.max(*v));
+    let before = burst.start.saturating_sub(calm(view))..burst.start;
+    if rough[before].iter().any(|value| *value > 0.1 * peak) {
+        return None;
+    }
     AROUND_S.into_iter().find_map(|around_s| {
         let calm = Calm::about(view, rough, burst, around_s)?;
         (peak > calm.asked()).then(|| (peak, peak / calm.rms.max(1e-9)))
