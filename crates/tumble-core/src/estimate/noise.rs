@@ -33,9 +33,6 @@ const FENCED: f32 = 0.05 * DEGREE_RAD;
 const PIVOT: f32 = 5e-3;
 /// The least that a pivot moves by, m.
 pub const PIVOT_FLOOR: f32 = 50e-6;
-/// Least fault of a box or a table that a person is told of, rad (0.005°). A sensor ten times as quiet as the sheet's sees some 40 µrad,
-/// which no person can mend and no two digits can say.
-const LEAST_TOLD_RAD: f32 = 87e-6;
 /// A bias wanders at least 0.1 mdps in 100 s and at most 60 mdps, (rad/s)²/s.
 pub(super) const WALK_FLOOR: f32 = 0.01e-6 * DEGREE_RAD * DEGREE_RAD / 100.0;
 const WALK_CAP: f32 = 3.6e-3 * DEGREE_RAD * DEGREE_RAD / 100.0;
@@ -159,14 +156,18 @@ impl Noise {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
     }
 
-    /// How crooked the box was found to be, rad, if it was called square and is certainly not.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the
+    /// sheet's sees some 40 µrad, which no person can mend and no two digits can say: 0.005° is the least that is told.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_TOLD_RAD)
+        const LEAST_RAD: f32 = 87e-6;
+        self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_RAD)
     }
 
-    /// By how much the box leaned differently from rest to rest on one face, rad, if it certainly did.
+    /// By how much the box leaned differently from rest to rest on one face, rad, if it certainly did. An accelerometer's bias that
+    /// wanders by 100 µg looks like 0.1 mrad: three times that is the least that is told of the table.
     pub fn lean_rad(&self) -> Option<f32> {
-        Some(self.contact_sigma_rad).filter(|sigma| *sigma > LEAST_TOLD_RAD)
+        const LEAST_LEAN_RAD: f32 = 300e-6;
+        Some(self.contact_sigma_rad).filter(|sigma| *sigma > LEAST_LEAN_RAD)
     }
 
     /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean

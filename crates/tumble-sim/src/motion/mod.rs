@@ -144,6 +144,8 @@ pub struct Motion {
     segments: Vec<Segment>,
     knocks: Vec<Knock>,
     pub(crate) leans: Vec<Lean>,
+    /// On a soft table, at the last rest, rad.
+    leans_n: Vector3<f64>,
     pub(crate) shortfall: Option<Shortfall>,
 }
 
@@ -169,6 +171,7 @@ impl Motion {
             segments: Vec::new(),
             knocks: Vec::new(),
             leans: Vec::new(),
+            leans_n: Vector3::zeros(),
             shortfall: None,
         })
     }
@@ -192,6 +195,9 @@ impl Motion {
         let planner = Planner { config: &self.config, rng: &mut self.rng, from, standing: self.standing };
         let plan = planner.plan(&primitive);
         let end_s = start_s + plan.duration_s;
+        if self.config.table.soft_deg > 0.0 && !matches!(primitive, Primitive::Rest { .. } | Primitive::Hold { .. }) {
+            self.sink(start_s, plan.duration_s);
+        }
         self.standing = plan.standing;
         self.segments.push(Segment { start_s, duration_s: plan.duration_s, from, to: plan.to, shape: plan.shape });
         if plan.put_down && self.config.hands.knock_mps2 > 0.0 {
@@ -200,6 +206,19 @@ impl Motion {
             self.knocks.push(Knock::draw(end_s - settle_s, settle_s, peak, &mut self.rng));
         }
         end_s
+    }
+
+    /// The box comes to lean otherwise than before, while it moves.
+    fn sink(&mut self, start_s: f64, duration_s: f64) {
+        let sigma = self.config.table.soft_deg.to_radians();
+        let leans_n = Vector3::new(self.rng.normal(), self.rng.normal(), 0.0) * sigma;
+        let more = leans_n - std::mem::replace(&mut self.leans_n, leans_n);
+        self.leans.push(Lean {
+            axis_n: more.try_normalize(0.0).unwrap_or_else(Vector3::x),
+            pivot_n_m: Vector3::zeros(),
+            angle_rad: more.norm(),
+            course: Course::Sink { start_s, duration_s },
+        });
     }
 
     /// The same, but for a turn that stops short.

@@ -14,6 +14,8 @@ pub struct Table {
     pub azimuth_deg: f64,
     /// Residual vibration, if any.
     pub vibration: Option<Vibration>,
+    /// How much its surface gives way: at each rest the box leans anew, by this 1σ about either level axis, degrees.
+    pub soft_deg: f64,
 }
 
 /// A steady shaking of the whole table, say by a fan or a pump.
@@ -30,7 +32,7 @@ pub struct Vibration {
 impl Table {
     /// A still table of this tilt.
     pub const fn tilted(tilt_deg: f64, azimuth_deg: f64) -> Self {
-        Self { tilt_deg, azimuth_deg, vibration: None }
+        Self { tilt_deg, azimuth_deg, vibration: None, soft_deg: 0.0 }
     }
 
     /// `R_n_from_p`: the plate is the level plane turned about the horizontal axis square to the azimuth.
@@ -211,6 +213,7 @@ impl MotionConfig {
         let hands = &self.hands;
         SimError::check("tilt_deg", self.table.tilt_deg, |v| v.abs() < 45.0, "below 45 degrees")?;
         SimError::check("azimuth_deg", self.table.azimuth_deg, |_| true, "finite")?;
+        SimError::check("soft_deg", self.table.soft_deg, |v| (0.0..5.0).contains(&v), "0 to 5 degrees")?;
         SimError::check("lever_b_m", self.shape.lever_b_m.norm(), |v| v < 1.0, "below 1 m")?;
         SimError::check("wobble_deg", hands.wobble_deg, |v| v.abs() < 20.0, "below 20 degrees")?;
         SimError::check("slide_m", hands.slide_m, |v| (0.0..0.5).contains(&v), "0 to 50 cm")?;

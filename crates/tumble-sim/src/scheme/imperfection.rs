@@ -27,6 +27,8 @@ pub enum Imperfection {
     ByHand(f64),
     /// The box slides about in its turns by this rms, m.
     Slide(f64),
+    /// The table gives way: at each rest the box leans anew, by this 1σ about either level axis, degrees.
+    SoftTable(f64),
     /// Turns end against a fence, each stop uniform within this of it, degrees.
     Fence(f64),
 }
@@ -45,7 +47,7 @@ impl Imperfection {
 
     /// Of its word, with its usual size if none is given: `bias_drift` (°/s), `clock` (fraction), `wobble` (°), `lever` (m),
     /// `crooked_box` (°), `temperature_ramp` (°C), `tilt` (°), `by_hand` (°), `slide` (m),
-    /// `fence` (°).
+    /// `soft_table` (°), `fence` (°).
     pub fn parse(word: &str, size: Option<f64>) -> Option<Self> {
         let or = |usual: f64| size.unwrap_or(usual);
         Some(match word {
@@ -58,6 +60,7 @@ impl Imperfection {
             "tilt" => Self::Tilt(or(3.0)),
             "by_hand" => Self::ByHand(or(2.0)),
             "slide" => Self::Slide(or(0.01)),
+            "soft_table" => Self::SoftTable(or(0.1)),
             "fence" => Self::Fence(or(0.1)),
             _ => return None,
         })
@@ -92,6 +95,7 @@ impl SchemeConfig {
             }
             Imperfection::Tilt(deg) => motion.table.tilt_deg = deg,
             Imperfection::Slide(metres) => motion.hands.slide_m = metres,
+            Imperfection::SoftTable(deg) => motion.table.soft_deg = deg,
             Imperfection::Fence(half_width_deg) => {
                 motion.hands.stops = crate::motion::Stops::Fenced { half_width_deg };
             }

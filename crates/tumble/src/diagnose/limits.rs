@@ -5,10 +5,11 @@ use nalgebra::{DMatrix, DVector};
 use super::diagnosis::Limit;
 use super::gates::chance::shift_seen;
 use super::judge::BESIDE_GATES;
-use super::search::bench::{Bench, Candidate, HEALTHY, with_walks};
+use super::search::bench::{Bench, Candidate, HEALTHY, WANDERING, with_walks};
 use super::search::ledger::{Ledger, Term};
 use super::search::select::Selection;
 use super::twin::noise::walk_floor;
+use super::walk_limit;
 
 /// Where the worst limit is above this many times the median, it is said.
 const UNEVEN: f64 = 3.0;
@@ -36,7 +37,13 @@ pub fn limits(bench: &mut Bench, selection: &Selection, beside_gates: bool) -> V
     let needed = if beside_gates { selection.threshold.max(BESIDE_GATES) } else { selection.threshold };
     let limit_of = |(index, candidate): (usize, &Candidate)| {
         let itself: Vec<usize> = (0..bench.accepted.len()).filter(|k| bench.accepted[*k].candidate == index).collect();
-        let asked = Asked { scales: &scales, needed, beside_gates, beside: bench.accepted_terms(&itself) };
+        let asked = Asked {
+            scales: &scales,
+            needed,
+            beside_gates,
+            beside: bench.accepted_terms(&itself),
+            candidates: &bench.candidates,
+        };
         limit(candidate, &asked, &ledger)
     };
     bench.candidates.iter().enumerate().map(limit_of).collect()
@@ -63,6 +70,7 @@ struct Asked<'a> {
     beside_gates: bool,
     /// Found as well.
     beside: Vec<Term>,
+    candidates: &'a [Candidate],
 }
 
 fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
@@ -81,9 +89,12 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
         if asked.beside_gates {
             return none("what distorts the samples leaves traces that wander as well", unit);
         }
-        // What is more than healthy by the first level that counts.
-        let limit = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
-        return Limit { id, limit, unit: unit.into(), testable: true, why: String::new() };
+        // What is more than healthy by the first level that counts, or what shows.
+        let least = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
+        return match walk(asked, ledger, gyro, least) {
+            Some(limit) => Limit { id, limit, unit: unit.into(), testable: true, why: String::new() },
+            None => none("no walk would show: too few rests, or too near in time", unit),
+        };
     }
     // The median over parameters and variants: axes and, of what begins at some time, times.
     let mut limits = limits_alone(candidate, asked, ledger);
@@ -121,6 +132,19 @@ fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f
         }
     }
     limits
+}
+
+/// The walk that shows, in its unit: a thousandth of a step's. Every level is as likely before.
+fn walk(asked: &Asked, ledger: &Ledger, gyro: bool, least: f64) -> Option<f64> {
+    let id = if gyro { "gyro_bias_step" } else { "accel_bias_step" };
+    let Some(steps) = asked.candidates.iter().find(|candidate| candidate.effect.card.id == id) else {
+        return Some(least);
+    };
+    let steps = steps.variants.iter().filter_map(|placed| Some((placed.setting?.1, placed.columns.clone())));
+    let (times_s, columns): (Vec<f64>, Vec<_>) = walk_limit::thinned(steps.collect()).into_iter().unzip();
+    let columns: Vec<usize> = columns.into_iter().flatten().collect();
+    let needed = asked.needed + (WANDERING.len() as f64).ln();
+    walk_limit::limit(&information(ledger, asked, &columns), &times_s, 1e-3, needed, least)
 }
 
 /// What the rows say of some columns where those beside are free within their priors: `I − C (B + W⁻²)⁻¹ Cᵀ`.

@@ -24,6 +24,7 @@ mod second;
 mod settings;
 pub mod transfer;
 pub mod twin;
+mod walk_limit;
 
 pub use options::Options;
 pub use outcome::Outcome;

@@ -27,7 +27,10 @@ pub fn is_due(recording: &Recording, first: &Diagnosis) -> bool {
 
 /// What to answer, given both.
 pub fn settle(recording: &Recording, first: Outcome, second: Outcome) -> Outcome {
-    let stands = |id: &str| second.diagnosis.effects.iter().any(|effect| effect.id == id);
+    // Without the moves a name may be one of a tie.
+    let stands = |id: &str| {
+        second.diagnosis.effects.iter().any(|effect| effect.id == id || effect.tied_with.iter().any(|tied| tied == id))
+    };
     let gone: Vec<_> = first.diagnosis.effects.iter().filter(|effect| !stands(&effect.id)).cloned().collect();
     let resolved = second.diagnosis.unknown.is_none() && (first.diagnosis.unknown.is_some() || !gone.is_empty());
     let Some(rate_hz) = rate_hz(recording).filter(|_| resolved && second.exhibits.is_some()) else { return first };

@@ -13,8 +13,8 @@ use crate::face::Face;
 use crate::motion::path::{NUDGE, WHOLE_TURN};
 use crate::tape::{ANGLE_UNIT_RAD, FORCE_UNIT_MPS2, Record, Segment, Tape};
 
-/// A face's contact with the table is taken for no better than this share of the prior's sigma: `f32` resolves a 6e-8th of a variance, which is 15 µrad
-/// beside 0.06, and thirty roundings' worth of that is 80.
+/// A face's contact with the table is taken for no better than this share of the prior's sigma: `f32` resolves a 6e-8th of a
+/// variance, which is 15 µrad beside 0.06, and thirty roundings' worth of that is 80.
 const RESOLVED: f32 = 1.0 / 600.0;
 /// Prior of one component of the Earth's rotation, rad/s (its whole is 7.29e-5).
 pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;

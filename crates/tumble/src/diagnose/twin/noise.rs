@@ -7,7 +7,8 @@ use tumble_core::setup::TurnStops;
 const FENCE_CAP_RAD: f64 = 0.3 * std::f64::consts::PI / 180.0;
 /// A lever arm that is nothing to speak of, each axis, m: (3, 2, 1) cm is how a sensor sits in a box (`docs/diagnosis.md`).
 pub const LEVER_SIGMA_M: f64 = 1.2e-2;
-/// How far a turn's axis is from where other turns have it, m.
+/// How far a turn's axis is from where other turns have it, m; more where the device found more: a hand that pushes a corner turns the box
+/// about another.
 pub const PIVOT_SIGMA_M: f64 = 5e-3;
 /// How well a face's contact with a firm table repeats, rad: 1.5 µm on 5 cm.
 const CONTACT_RAD: f64 = 30e-6;
@@ -96,6 +97,7 @@ impl Noise {
             },
             facet_sigma_rad: self.facet_sigma_rad.map(|sigma| sigma.min(SQUARE_RAD)),
             contact_sigma_rad: CONTACT_RAD,
+            pivot_sigma_m: PIVOT_SIGMA_M,
             motion_scale: 1.0,
             slide_rad: 0.0,
             ..*self
@@ -116,7 +118,7 @@ impl Noise {
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
             contact_sigma_rad: f64::from(device.contact_sigma_rad).max(CONTACT_RAD),
-            pivot_sigma_m: PIVOT_SIGMA_M,
+            pivot_sigma_m: f64::from(device.pivot_sigma_m).max(PIVOT_SIGMA_M),
             slide_rad: 0.0,
         }
     }
