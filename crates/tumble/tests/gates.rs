@@ -230,3 +230,63 @@ fn stamps_that_do_not_increase_are_named() {
     back.write(std::fs::File::create(&file).expect("a file")).expect("written");
     assert!(Recording::read_with_its_stamps(&file).is_err(), "a second back is no late stamp");
 }
+
+/// Both ways on six faces, realistic.
+fn plain(seed: u64) -> Recording {
+    let made = SchemeConfig::realistic(Scheme::Double, seed).record().expect("a valid configuration");
+    recording(&made.samples, Metadata::default(), 6)
+}
+
+/// A converter clips before its filter: what comes out swings past the level, settles on it and leaves it slowly, so that the largest reading is
+/// no level at all.
+#[test]
+fn clipping_is_seen_behind_a_filter() {
+    let (level, step) = (60.0, 250.0 / 32768.0);
+    let mut recording = plain(3);
+    // Butterworth of second order at a fifth of the rate: 40 Hz of 200.
+    let k = (std::f64::consts::PI / 5.0).tan();
+    let norm = 1.0 / (1.0 + k * std::f64::consts::SQRT_2 + k * k);
+    let (b, a1, a2) = (k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - k * std::f64::consts::SQRT_2 + k * k) * norm);
+    for axis in 0..3 {
+        let (mut x, mut y) = ([recording.rows[0].gyro_dps[axis]; 2], [recording.rows[0].gyro_dps[axis]; 2]);
+        for row in &mut recording.rows {
+            let now = row.gyro_dps[axis].clamp(-level, level);
+            let out = b * (now + 2.0 * x[0] + x[1]) - a1 * y[0] - a2 * y[1];
+            (x, y) = ([now, x[0]], [out, y[0]]);
+            row.gyro_dps[axis] = (out / step).round() * step;
+        }
+    }
+    let gated = gates(&recording);
+    let found = gated.found.iter().find(|found| found.id == "gyro_saturation");
+    let found = found.unwrap_or_else(|| panic!("{}", words(&gated)));
+    let told = &found.parameters[0];
+    assert!((told.value.abs() - level).abs() < 2.0 * step, "{}", words(&gated));
+}
+
+/// A turn that is rougher all along than the least knock hid what stood sixty times above it.
+#[test]
+fn a_knock_is_seen_in_a_rough_turn() {
+    let mut recording = plain(4);
+    let turning = |row: &Row| row.gyro_dps.iter().map(|v| v * v).sum::<f64>().sqrt() > 20.0;
+    let rows = 0..recording.rows.len();
+    let stretches: Vec<Vec<usize>> = rows
+        .collect::<Vec<_>>()
+        .chunk_by(|a, b| turning(&recording.rows[*a]) == turning(&recording.rows[*b]))
+        .map(<[usize]>::to_vec)
+        .collect();
+    let longest = stretches.iter().filter(|rows| turning(&recording.rows[rows[0]])).max_by_key(|rows| rows.len());
+    let turn = longest.expect("turns");
+    let middle = turn[turn.len() / 2];
+    for &index in turn {
+        let row = &mut recording.rows[index];
+        row.accel_g[0] += 0.07 * (std::f64::consts::TAU * 31.0 * row.t_s).sin();
+    }
+    for (k, row) in recording.rows[middle..middle + 4].iter_mut().enumerate() {
+        row.accel_g[2] += 4.0 * (std::f64::consts::PI * (k as f64 + 0.5) / 4.0).sin();
+    }
+    let gated = gates(&recording);
+    let found = gated.found.iter().find(|found| found.id == "shock");
+    let time_s = found.and_then(|found| found.parameters.iter().find(|p| p.name == "time")).map(|p| p.value);
+    let at_s = recording.rows[middle].t_s;
+    assert!(time_s.is_some_and(|t_s| (t_s - at_s).abs() < 0.02), "at {at_s}: {}", words(&gated));
+}
