@@ -6,6 +6,7 @@ use super::catalogue::STRUCTURAL;
 use super::diagnosis::Value;
 use super::findings;
 use super::intake::bench;
+use super::search::bench::Bench;
 use super::search::ledger::Ledger;
 use super::search::null::{self, FALSE_ALARMS};
 use super::search::{select, unknown};
@@ -30,6 +31,19 @@ fn knowing(options: &Options, known: impl Fn(&str) -> bool) -> Options {
 pub fn of_effect(recording: &Recording, options: &Options, id: &str) -> Option<f64> {
     let mut bench = bench(recording, &knowing(options, |known| known == id)).ok()?;
     select::score(&mut bench).first().map(|score| score.gain)
+}
+
+/// The same beside others that the search knows too.
+pub fn of_effect_beside(recording: &Recording, options: &Options, id: &str, others: &[&str]) -> Option<f64> {
+    let mut bench = bench(recording, &knowing(options, |known| known == id || others.contains(&known))).ok()?;
+    select::select(&mut bench, options.seed, &mut |_, _| {});
+    let is_it = |bench: &Bench, candidate: usize| bench.candidates[candidate].effect.card.id == id;
+    if let Some(k) = (0..bench.accepted.len()).find(|k| is_it(&bench, bench.accepted[*k].candidate)) {
+        let whole = select::settle_walks(&mut bench).1;
+        return Some(whole - select::without(&mut bench, k));
+    }
+    let scores = select::score(&mut bench);
+    scores.iter().find(|score| is_it(&bench, score.candidate)).map(|score| score.gain)
 }
 
 /// ln of the mean odds of all shapes without a name, and what it needs.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::answer::{Answer, Asked};
 use super::case::Group;
 use super::mapping::{self, Pairing, True};
-use super::size::Size;
+use super::size::{self, Size};
 
 /// What was hidden, unsealed.
 #[derive(Clone, Debug)]
@@ -55,6 +55,8 @@ pub enum Outcome {
     Extra,
     /// One of two.
     Half,
+    /// One of two, where the other shows at no size.
+    Hidden,
     /// Something else.
     Wrong,
     /// Something is there, unnamed.
@@ -77,6 +79,7 @@ impl Outcome {
             Self::Tie => "tie",
             Self::Extra => "extra",
             Self::Half => "half",
+            Self::Hidden => "hidden",
             Self::Wrong => "wrong",
             Self::Unknown => "unknown",
             Self::Alias => "alias",
@@ -106,7 +109,10 @@ impl Scored {
     /// Of an answer and a secret.
     pub fn new(name: String, hidden: Hidden, asked: Asked) -> Self {
         let ids: Vec<&str> = hidden.effects.iter().map(|(id, _)| id.as_str()).collect();
-        let outcome = asked.answer.as_ref().map_or(Outcome::Broken, |answer| judge(hidden.group, &ids, answer));
+        let outcome = asked.answer.as_ref().map_or(Outcome::Broken, |answer| match judge(hidden.group, &ids, answer) {
+            Outcome::Half if hidden.sizes.iter().any(|size| size.by == size::HIDDEN) => Outcome::Hidden,
+            outcome => outcome,
+        });
         let found = |id: &str| asked.answer.as_ref()?.effects.iter().find(|named| named.id == id);
         let pairs = |(id, truth): &(String, Vec<True>)| {
             found(id).map(|named| mapping::pair(id, truth, named)).unwrap_or_default()

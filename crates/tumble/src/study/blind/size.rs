@@ -6,7 +6,8 @@ use tumble_sim::effect::{Kind, Values};
 
 use super::answer::{Answer, Limit};
 use super::case::{self, Setting};
-use super::{strength, units};
+use super::strength::{self, Sought};
+use super::units;
 
 /// Variants: a multiple of a limit means nothing there. Nor does it for a clock's step: its limit is a tenth of the interval, and
 /// twice that divides the interval exactly, which leaves the stamps even.
@@ -18,6 +19,9 @@ const PRESENT: [(&str, f64); 2] = [("accel_lever_arm", 3.742), ("earth_rotation"
 /// Where the units differ by more than a name: ppm at 100 dps in a ppm/dps², Earth rates in a degree per hour.
 const SPECIAL: [(&str, &str, f64); 2] =
     [("gyro_scale_cubic", "ppm/dps^2", 1e4), ("earth_rotation", "deg/h", 1.0 / 15.041)];
+
+/// Instead of a limit, where another effect takes all that could show this one.
+pub const HIDDEN: &str = "no size shows beside the other";
 
 /// A size, and what it rests on.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -41,28 +45,41 @@ pub fn can_show(id: &str, twin: &Answer) -> bool {
     twin.detection_limits.iter().find(|limit| limit.id == id).is_none_or(|limit| limit.testable)
 }
 
-/// The sizes of a case's effects, in their order; what gates find first, because it takes from what the search can see.
+/// The sizes of a case's effects, in their order. What gates find first, because it takes from what the search can see; then each beside those
+/// before it, because a bias that wanders is noise to all else.
 pub fn sizes(ids: &[&str], at: f64, twin: Option<&Answer>, setting: &Setting) -> Vec<Size> {
     let searched = |id: &str| Effect::kinds().any(|kind| kind.id == id && strength::Seen::of(kind).is_some());
     let gates = ids.iter().filter(|id| !searched(id)).filter_map(|id| as_stated(id, at, twin, setting.seed));
     let mut sizes: Vec<Size> = gates.collect();
-    let beside: Vec<Effect> =
-        sizes.iter().filter_map(|size| Effect::new(&size.id, Some(size.magnitude)).ok()).collect();
-    sizes.extend(ids.iter().filter(|id| searched(id)).filter_map(|id| size(id, at, twin, setting, &beside)));
+    let mut known: Vec<&str> = Vec::new();
+    for id in ids.iter().filter(|id| searched(id)) {
+        let beside: Vec<Effect> =
+            sizes.iter().filter_map(|size| Effect::new(&size.id, Some(size.magnitude)).ok()).collect();
+        sizes.extend(size(id, at, twin, setting, &beside, &known));
+        known.push(id);
+    }
     sizes.sort_by_key(|size| ids.iter().position(|id| *id == size.id));
     sizes
 }
 
 /// The size of one effect of a case at `at` times the limit of its own direction; where that cannot be had, of the limit that
 /// the twin states.
-fn size(id: &str, at: f64, twin: Option<&Answer>, setting: &Setting, beside: &[Effect]) -> Option<Size> {
+fn size(
+    id: &str,
+    at: f64,
+    twin: Option<&Answer>,
+    setting: &Setting,
+    beside: &[Effect],
+    known: &[&str],
+) -> Option<Size> {
     let kind = Effect::kinds().find(|kind| kind.id == id)?;
     let stated = stated(kind, twin).ok();
     let first = stated.map_or(kind.default - present(id), |stated| stated.0);
-    let Some(limit) = strength::limit(setting, beside, kind, present(id), first) else {
+    let Some(Sought { size: limit, shows }) = strength::limit(setting, beside, known, kind, present(id), first) else {
         return as_stated(id, at, twin, setting.seed);
     };
     let by = match strength::Seen::of(kind) {
+        _ if !shows && !beside.is_empty() => HIDDEN,
         Some(strength::Seen::ByShapes) => "limit of the shapes",
         _ => "limit",
     };
@@ -142,7 +159,7 @@ mod tests {
     fn without_a_limit_the_effects_own_range_is_used_and_said() {
         let scheme = tumble_sim::Scheme::Double;
         let setting = Setting { scheme, seed: 1, by_hand: false, swing: true, noise: 1.0 };
-        let size = size("gyro_saturation", 2.0, None, &setting, &[]).expect("it exists");
+        let size = size("gyro_saturation", 2.0, None, &setting, &[], &[]).expect("it exists");
         assert!(
             (30.0..=80.0).contains(&size.magnitude) && size.limit.is_none() && size.by.starts_with("its own range")
         );

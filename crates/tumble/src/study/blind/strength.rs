@@ -18,7 +18,7 @@ use crate::recording::Recording;
 /// Sizes that are tried at most. Gains grow with the square of the size, so that each step is nearly the last.
 const TRIALS: usize = 6;
 /// A gain this near its goal is good enough: a tenth in size.
-const NEAR: std::ops::RangeInclusive<f64> = 0.85..=1.2;
+const NEAR: std::ops::Range<f64> = 0.85..1.2;
 
 /// Who would have to see it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +38,24 @@ impl Seen {
     }
 }
 
-/// The size of this effect that is seen in 95 of 100 recordings like this, in the simulation's unit; `present` of it is in
-/// every recording, and `beside` it is what gates find and mask. None if none is, or too large a one.
-pub fn limit(setting: &Setting, beside: &[Effect], kind: &Kind, present: f64, first: f64) -> Option<f64> {
+/// A size that was sought.
+pub struct Sought {
+    /// In the simulation's unit.
+    pub size: f64,
+    /// False where the largest that can be made would not be seen.
+    pub shows: bool,
+}
+
+/// The size of this effect that is seen in 95 of 100 recordings like this; `present` of it is in every recording, and `beside` it are
+/// effects that gates find and mask or, `known`, that the search finds. None if no size can be had.
+pub fn limit(
+    setting: &Setting,
+    beside: &[Effect],
+    known: &[&str],
+    kind: &Kind,
+    present: f64,
+    first: f64,
+) -> Option<Sought> {
     let seen = Seen::of(kind)?;
     let options = Options::default();
     let threshold = match seen {
@@ -50,11 +65,13 @@ pub fn limit(setting: &Setting, beside: &[Effect], kind: &Kind, present: f64, fi
     let (low, high) = kind.values.bounds();
     let mut size = first;
     let mut best: Option<(f64, f64)> = None;
+    let mut shows = true;
     for _ in 0..TRIALS {
         let magnitude = (present + size).clamp(low, high);
         let recording = with(setting, beside, kind, magnitude)?;
         let (gain, needed) = match seen {
-            Seen::ByName => (promise::of_effect(&recording, &options, kind.id)?, threshold),
+            Seen::ByName if known.is_empty() => (promise::of_effect(&recording, &options, kind.id)?, threshold),
+            Seen::ByName => (promise::of_effect_beside(&recording, &options, kind.id, known)?, threshold),
             Seen::ByShapes => promise::of_shapes(&recording, &options)?,
         };
         let share = gain / goal(needed);
@@ -63,11 +80,15 @@ pub fn limit(setting: &Setting, beside: &[Effect], kind: &Kind, present: f64, fi
             best = Some((off, size / share.max(0.01).sqrt()));
         }
         if NEAR.contains(&share) || magnitude >= high {
+            shows = share >= NEAR.start;
             break;
         }
         size /= share.clamp(0.06, 16.0).sqrt();
     }
-    best.filter(|(off, _)| *off < f64::MAX).map(|(_, size)| size)
+    if !shows {
+        return Some(Sought { size, shows });
+    }
+    best.filter(|(off, _)| *off < f64::MAX).map(|(_, size)| Sought { size, shows })
 }
 
 /// `√g = (1.645 √2 + √(2·1.645² + 4 T))/2`.

@@ -48,11 +48,12 @@ const STRANGERS: [(&str, Outcome); 6] = [
     ("untest", Outcome::NotTestable),
     ("broken", Outcome::Broken),
 ];
-const PAIRS: [(&str, Outcome); 8] = [
+const PAIRS: [(&str, Outcome); 9] = [
     ("right", Outcome::Right),
     ("tie", Outcome::Tie),
     ("extra", Outcome::Extra),
     ("half", Outcome::Half),
+    ("hidden", Outcome::Hidden),
     ("wrong", Outcome::Wrong),
     ("unkn", Outcome::Unknown),
     ("missed", Outcome::Missed),
