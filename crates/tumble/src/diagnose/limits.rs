@@ -13,6 +13,8 @@ use super::walk_limit;
 
 /// Where the worst limit is above this many times the median, it is said.
 const UNEVEN: f64 = 3.0;
+/// … and where it is above this many, that it does not show there.
+const NOWHERE: f64 = 30.0;
 
 /// What the recording could have shown, with 95 % certainty, by the threshold in force.
 ///
@@ -105,6 +107,7 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
     let testable = limit < 10.0 * width;
     let why = match () {
         () if !testable => format!("only a size of {limit:.2} {unit} would show; usual are up to {width} {unit}"),
+        () if worst > NOWHERE * limit => "for half of all axes and times; at some it would not show".into(),
         () if worst > UNEVEN * limit => {
             format!("for half of all axes and times; {worst:.2} {unit} where it shows least")
         }

@@ -189,10 +189,13 @@ pub fn limits(diagnosis: &Diagnosis) -> String {
     let size = |limit: f64| if limit < 1e90 { words::figure(limit) } else { "no size".into() };
     let rows: Vec<Vec<String>> = seen
         .iter()
-        .map(|limit| vec![limit.id.clone(), size(limit.limit), limit.unit.clone(), typical(&limit.id).into()])
+        .map(|limit| {
+            let of = [&limit.id, &size(limit.limit), &limit.unit, &limit.why].map(String::clone);
+            of.into_iter().chain([typical(&limit.id).into()]).collect()
+        })
         .collect();
     let mut body = paragraph("Of this size, an effect would have been found in 95 of 100 recordings like this one:");
-    body += &table(&["effect", "limit#", "unit", "usual size"], &rows);
+    body += &table(&["effect", "limit#", "unit", "where", "usual size"], &rows);
     if !blind.is_empty() {
         let rows: Vec<Vec<String>> =
             blind.iter().map(|limit| vec![limit.id.clone(), limit.why.clone(), typical(&limit.id).into()]).collect();
