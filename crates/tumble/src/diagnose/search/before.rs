@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector3;
 
-use super::generic::{Family, remembered, up};
+use super::family::{Family, remembered, up};
 use crate::diagnose::catalogue::{AXES, DPS, G, reading};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::influence::Push;

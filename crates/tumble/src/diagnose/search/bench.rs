@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use nalgebra::DMatrix;
 
-use super::generic::{Family, families};
+use super::family::Family;
+use super::generic::families;
 use super::ledger::{Fit, Ledger, Term, by_place, log_mean};
 use crate::diagnose::catalogue::{AtSize, Effect, Model, Parameter, STRUCTURAL};
 use crate::diagnose::twin::Twin;

@@ -1,30 +1,15 @@
 //! Shapes that detect what the catalogue cannot explain. They are never used to name it.
 
-use std::sync::Arc;
-
 use nalgebra::Vector3;
 
 use super::before;
-use crate::diagnose::catalogue::{AXES, DPS, G, reading};
+use super::family::{Family, Shape, Shapes, family, up};
+use super::memory::{memory_of_force, memory_of_motion};
+use crate::diagnose::catalogue::{AXES, G};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Deed;
-use crate::diagnose::twin::influence::{Influence, Push};
 use crate::diagnose::twin::trajectory::Moment;
 
-/// Shapes of one kind on one triad.
-pub struct Family {
-    /// What it follows, in words.
-    pub name: String,
-    /// Gyroscope or accelerometer.
-    pub gyro: bool,
-    /// Its columns: (channel, what).
-    pub members: Vec<(usize, String)>,
-    /// One a member.
-    pub influences: Vec<Influence>,
-}
-
-type Shape = Box<dyn Fn(&Moment) -> f64 + Send + Sync>;
-type Shapes = Vec<(String, Shape)>;
 /// A family's name, and its shapes for a recording of this length (s), on the gyroscope or not.
 type Group = (&'static str, fn(f64, bool) -> Shapes);
 
@@ -61,92 +46,6 @@ pub fn families(twin: &Twin) -> Vec<Family> {
     families.extend([true, false].map(|gyro| memory_of_motion(twin, gyro)));
     families.extend([true, false].map(|gyro| memory_of_force(twin, gyro)));
     families
-}
-
-/// What shapes remember of a rate.
-type Remembered = fn(&Vector3<f64>) -> f64;
-
-/// Readings that remember motion: `∫ e^(−(t−s)/τ) ω(s) ds`, its components' sizes, and its own.
-fn memory_of_motion(twin: &Twin, gyro: bool) -> Family {
-    const TAUS_S: [f64; 3] = [2.0, 8.0, 30.0];
-    // Shapes that belong to axes come first, in threes.
-    const OF_AXES: [(&str, Remembered); 6] = [
-        ("w_x", |w| w.x),
-        ("w_y", |w| w.y),
-        ("w_z", |w| w.z),
-        ("|w_x|", |w| w.x.abs()),
-        ("|w_y|", |w| w.y.abs()),
-        ("|w_z|", |w| w.z.abs()),
-    ];
-    let of_axes = TAUS_S.into_iter().flat_map(|tau_s| OF_AXES.map(|(name, value)| (tau_s, name, value)));
-    let whole = TAUS_S.map(|tau_s| (tau_s, "|w|", (|w| w.norm()) as Remembered));
-    let shapes: Vec<_> = of_axes
-        .chain(whole)
-        .map(|(tau_s, name, value)| (format!("memory of {name} over {tau_s} s"), faded(twin, tau_s, value)))
-        .collect();
-    remembered("memory of motion", gyro, &shapes)
-}
-
-/// `∫ e^(−(t−s)/τ) v(s) ds` of a value of the rate.
-fn faded(twin: &Twin, tau_s: f64, value: Remembered) -> Arc<Vec<f64>> {
-    let (mut sum, mut last_s) = (0.0, 0.0);
-    let filtered = twin.trajectory.moments.iter().map(|moment| {
-        let dt_s = moment.t_s - last_s;
-        last_s = moment.t_s;
-        sum = sum * (-dt_s / tau_s).exp() + value(&moment.smooth_rate) * dt_s;
-        sum
-    });
-    Arc::new(filtered.collect())
-}
-
-/// Readings that come late in part, as of a body that creeps: `ṡ = (f − s)/τ`, settled at the start.
-fn memory_of_force(twin: &Twin, gyro: bool) -> Family {
-    let mut shapes: Vec<(String, Arc<Vec<f64>>)> = Vec::new();
-    for tau_s in [3.0, 12.0, 50.0] {
-        for (axis, letter) in AXES.iter().enumerate() {
-            let (mut settled, mut last_s) = (None, 0.0);
-            let filtered = twin.trajectory.moments.iter().map(|moment| {
-                let force = moment.force[axis] / G;
-                let keep = (-(moment.t_s - last_s) / tau_s).exp();
-                last_s = moment.t_s;
-                let value = force + (settled.unwrap_or(force) - force) * keep;
-                settled = Some(value);
-                value
-            });
-            shapes.push((format!("memory of f_{letter} over {tau_s} s"), Arc::new(filtered.collect())));
-        }
-    }
-    remembered("memory of force", gyro, &shapes)
-}
-
-/// Each shape, a value a sample, on each channel of a triad.
-pub(super) fn remembered(name: &str, gyro: bool, shapes: &[(String, Arc<Vec<f64>>)]) -> Family {
-    let first = if gyro { 0 } else { 3 };
-    let unit = if gyro { DPS } else { 1e-3 * G };
-    let (mut members, mut influences) = (Vec::new(), Vec::new());
-    for channel in first..first + 3 {
-        for (what, values) in shapes {
-            let values = values.clone();
-            members.push((channel, what.clone()));
-            influences.push(reading(move |moment| {
-                Push::channel(channel, unit * values.get(moment.index).copied().unwrap_or(0.0))
-            }));
-        }
-    }
-    Family { name: name.into(), gyro, members, influences }
-}
-
-fn family(name: &str, gyro: bool, shapes: impl Fn() -> Shapes) -> Family {
-    let first = if gyro { 0 } else { 3 };
-    let unit = if gyro { DPS } else { 1e-3 * G };
-    let (mut members, mut influences) = (Vec::new(), Vec::new());
-    for channel in first..first + 3 {
-        for (what, shape) in shapes() {
-            members.push((channel, what));
-            influences.push(reading(move |moment| Push::channel(channel, unit * shape(moment))));
-        }
-    }
-    Family { name: name.into(), gyro, members, influences }
 }
 
 fn vector(what: &'static str, value: fn(&Moment) -> Vector3<f64>) -> Shapes {
@@ -249,10 +148,6 @@ fn temperature() -> Shapes {
 
 fn heading() -> Shapes {
     vector("north", north).into_iter().chain(vector("east", east)).collect()
-}
-
-pub(super) fn up(moment: &Moment) -> Vector3<f64> {
-    moment.attitude.inverse_transform_vector(&Vector3::z())
 }
 
 fn north(moment: &Moment) -> Vector3<f64> {

@@ -2,8 +2,10 @@
 
 mod before;
 pub mod bench;
+pub mod family;
 pub mod generic;
 pub mod ledger;
+mod memory;
 pub mod null;
 pub mod restless;
 pub mod select;

@@ -8,7 +8,7 @@
 use nalgebra::DVector;
 
 use super::bench::Bench;
-use super::generic::Family;
+use super::family::Family;
 use super::ledger::{Fit, Ledger, Term, by_place, log_mean};
 use super::null::FALSE_ALARMS;
 use crate::diagnose::twin::rows::Rows;
