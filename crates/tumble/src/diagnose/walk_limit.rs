@@ -22,9 +22,12 @@ pub fn thinned<T>(instants: Vec<T>) -> Vec<T> {
     instants.into_iter().step_by(every).collect()
 }
 
-/// The least q from `least` on at which the odds are above `needed` (ln) in 95 of 100; none if no q is. `gram`: what the rows say of the
+/// The least q from `least` on at which the odds are above `needed` (ln) in 95 of 100; none if no q is, as of no steps. `gram`: what the rows say of the
 /// steps, three axes an instant; `times_s`: their instants; one of q's units a root second is `unit` of the steps'.
 pub fn limit(gram: &DMatrix<f64>, times_s: &[f64], unit: f64, needed: f64, least: f64) -> Option<f64> {
+    if times_s.is_empty() || gram.iter().any(|value| !value.is_finite()) {
+        return None;
+    }
     let since = |k: usize| if k == 0 { times_s[0] } else { times_s[k] - times_s[k - 1] };
     let root = DVector::from_fn(gram.nrows(), |i, _| unit * since(i / 3).max(0.0).sqrt());
     let scaled = DMatrix::from_fn(gram.nrows(), gram.ncols(), |i, j| root[i] * gram[(i, j)] * root[j]);
@@ -91,5 +94,6 @@ mod tests {
         let share = exceed.count() as f64 / 500.0;
         assert!((0.92..0.98).contains(&share), "{share} at q {q}");
         assert_eq!(limit(&(gram * 1e-20), &times, 1.0, needed, 1e-4), None);
+        assert_eq!(limit(&DMatrix::zeros(0, 0), &[], 1.0, needed, 1e-4), None);
     }
 }
