@@ -2,7 +2,7 @@
 
 use tumble::settle;
 use tumble::study::trial::readings;
-use tumble_core::estimate::{Conditions, Estimate};
+use tumble_core::estimate::{Conditions, Estimate, PARAMETERS};
 use tumble_core::procedure::{BoxFaces, TurnStops};
 use tumble_core::tape::Tape;
 use tumble_sim::SchemeConfig;
@@ -66,13 +66,16 @@ impl Session {
     /// Errors of all numbers, in the order of the covariance.
     pub fn errors(&self) -> Vec<f64> {
         let values = self.estimate.calibration.parameters().map(|parameter| f64::from(parameter.value));
-        values.zip(self.truths()).map(|(value, truth)| value - truth).collect()
+        values.zip(self.truths()).take(PARAMETERS).map(|(value, truth)| value - truth).collect()
     }
 
+    /// Of all parameters that a calibration can have; nobody asks for the temperature's.
     fn truths(&self) -> impl Iterator<Item = f64> + '_ {
         let (accel, gyro) = (&self.truth.accelerometer, &self.truth.gyroscope);
         let truths = accel.bias_mps2.iter().chain(accel.correction.iter().flatten());
-        truths.chain(&gyro.bias_rad_s).chain(gyro.correction.iter().flatten()).copied()
+        let felt = gyro.g_sensitivity_rad_s_per_mps2.unwrap_or_default().into_iter().flatten();
+        let numbers = truths.chain(&gyro.bias_rad_s).chain(gyro.correction.iter().flatten()).copied();
+        numbers.chain([f64::NAN]).chain(felt)
     }
 }
 

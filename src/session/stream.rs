@@ -33,10 +33,12 @@ impl Stream {
         run[1] = (seq, t_us);
         match (self.kind, in_force) {
             (StreamKind::Raw, _) => console::try_write_frame(&RawFrame { seq, t_us, counts }.line()),
-            (StreamKind::Cal, Some(record)) => match CompensatedFrame::new(seq, &compensate(record, sample)) {
-                Some(frame) => console::try_write_frame(&frame.line()),
-                None => FRAMES_DROPPED.add(1),
-            },
+            (StreamKind::Cal, Some(record)) => {
+                match CompensatedFrame::new(seq, &record.calibration.calibration().compensate(sample)) {
+                    Some(frame) => console::try_write_frame(&frame.line()),
+                    None => FRAMES_DROPPED.add(1),
+                }
+            }
             (StreamKind::Cal, None) | (StreamKind::Off, _) => {}
         }
     }
@@ -55,14 +57,5 @@ impl Stream {
     /// As measured, or as set.
     pub fn rate_hz(&self) -> f32 {
         self.measured_rate_hz().unwrap_or(NOMINAL_RATE_HZ)
-    }
-}
-
-fn compensate(record: &Record, raw: &Sample) -> Sample {
-    let calibration = record.calibration.calibration();
-    Sample {
-        angular_rate_rad_s: calibration.gyroscope.triad.compensate(&raw.angular_rate_rad_s),
-        specific_force_mps2: calibration.accelerometer.triad.compensate(&raw.specific_force_mps2),
-        ..*raw
     }
 }

@@ -4,6 +4,8 @@ use heapless::Vec;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
+use crate::sample::Sample;
+
 mod parameter;
 
 pub use parameter::Parameter;
@@ -48,6 +50,15 @@ pub struct TriadEstimate {
     pub observable: [[bool; 3]; 3],
 }
 
+/// How a gyroscope's reading follows the specific force: `ω = M (ω_raw − b − G f)`, f compensated, frame b.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GSensitivity {
+    /// G, (rad/s)/(m/s²), row the gyroscope's axis.
+    pub matrix: Matrix3<f32>,
+    /// One sigma, element by element.
+    pub sigma: Matrix3<f32>,
+}
+
 /// The axes `b` that compensated data are given in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Frame {
@@ -77,12 +88,32 @@ pub struct Calibration {
     pub accelerometer: TriadEstimate,
     /// rad/s.
     pub gyroscope: TriadEstimate,
+    /// Where the gyroscope certainly feels force.
+    pub g_sensitivity: Option<GSensitivity>,
     /// Axes of the compensated data.
     pub frame: Frame,
     /// Mean die temperature of the session, °C.
     pub temperature_degc: f32,
     /// Residuals.
     pub fit: Fit,
+}
+
+impl GSensitivity {
+    /// Adds what a bias that walks makes of it, `walked` being its variance over the session by g²: about its own straight line a
+    /// walk has a fifteenth of that, and an element is half the difference of two opposite faces.
+    pub(crate) fn widen(&mut self, walked: f32) {
+        self.sigma = self.sigma.map(|sigma| libm::sqrtf(sigma * sigma + walked / 30.0));
+    }
+}
+
+impl Calibration {
+    /// A raw sample compensated: `f = A (f_raw − a)`, `ω = M (ω_raw − b − G f)`.
+    pub fn compensate(&self, raw: &Sample) -> Sample {
+        let specific_force_mps2 = self.accelerometer.triad.compensate(&raw.specific_force_mps2);
+        let felt = self.g_sensitivity.map_or(Vector3::zeros(), |felt| felt.matrix * specific_force_mps2);
+        let angular_rate_rad_s = self.gyroscope.triad.compensate(&(raw.angular_rate_rad_s - felt));
+        Sample { angular_rate_rad_s, specific_force_mps2, ..*raw }
+    }
 }
 
 /// What the judge says.

@@ -3,7 +3,6 @@
 pub mod closures;
 pub mod covariance;
 pub mod device;
-pub mod drift;
 pub mod facets;
 pub mod filter;
 pub mod group;
@@ -13,6 +12,8 @@ pub mod model;
 pub mod noise;
 pub mod normal;
 pub mod prior;
+pub mod resting;
+mod result;
 pub mod scatter;
 pub mod six_face;
 pub mod stand;

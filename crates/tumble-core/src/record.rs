@@ -8,14 +8,15 @@
 //! | 8 | n | payload, `postcard` |
 //! | 8 + n | 4 | CRC-32 (IEEE 802.3) of all before it, little-endian |
 //!
-//! This frame is the same in every version; only the payload changes. The payload of version 1 is in `v1.rs`, pinned byte by
-//! byte by a test. A version 2 would be a `v2.rs` with its own payload, `impl From<v1::Payload> for v2::Payload`, and one more
-//! arm in [`decode`]; version 1 stays as it is for ever. A newer version than [`VERSION`] is intact but unknown:
-//! [`RecordError::Newer`], to be left in flash.
+//! This frame is the same in every version; only the payload changes. The payloads are in `v1.rs` and `v2.rs`, pinned byte by
+//! byte by tests, and stay as they are for ever: a version 3 is a `v3.rs` and one more arm in [`decode`]. [`encode`] writes the lowest
+//! version that holds the calibration, so that an older firmware reads all that it can. A newer version than [`VERSION`] is intact but
+//! unknown: [`RecordError::Newer`], to be left in flash.
 
 #[cfg(test)]
 mod tests;
 mod v1;
+mod v2;
 
 use core::fmt;
 
@@ -27,8 +28,8 @@ use crate::calibration::{AcceptedCalibration, Calibration};
 use crate::sample::Ranges;
 use crate::setup::Setup;
 
-/// The format that [`encode`] writes.
-pub const VERSION: u16 = 1;
+/// The newest format that is known, and that [`encode`] writes where the calibration needs it.
+pub const VERSION: u16 = 2;
 /// No record is longer, in this version or a later one.
 pub const MAX_BYTES: usize = 384;
 
@@ -131,15 +132,22 @@ pub enum RecordError {
 /// Makes the bytes.
 ///
 /// # Errors
-/// [`RecordError::NotFinite`] for a calibration that holds what is no finite number, [`RecordError::TooLarge`] never in version 1.
+/// [`RecordError::NotFinite`] for a calibration that holds what is no finite number, [`RecordError::TooLarge`] never up to version 2.
 pub fn encode(origin: &Origin, calibration: &AcceptedCalibration) -> Result<Bytes, RecordError> {
     check_finite(origin, calibration.calibration())?;
-    let payload = v1::Payload::new(origin, calibration.calibration());
+    let calibration = calibration.calibration();
     let mut buffer = [0; MAX_BYTES - HEADER - CHECKSUM];
-    let payload = postcard::to_slice(&payload, &mut buffer).map_err(|_| RecordError::TooLarge)?;
+    let first = postcard::to_slice(&v1::Payload::new(origin, calibration), &mut buffer);
+    let mut used = first.map_err(|_| RecordError::TooLarge)?.len();
+    let mut version = 1u16;
+    if let (Some(felt), Some(rest)) = (&calibration.g_sensitivity, buffer.get_mut(used..)) {
+        used += postcard::to_slice(&v2::pack(felt), rest).map_err(|_| RecordError::TooLarge)?.len();
+        version = 2;
+    }
+    let payload = buffer.get(..used).ok_or(RecordError::TooLarge)?;
     let length = u16::try_from(payload.len()).map_err(|_| RecordError::TooLarge)?;
     let mut bytes = Bytes::new();
-    for part in [&MAGIC, &VERSION.to_le_bytes(), &length.to_le_bytes(), &*payload] as [&[u8]; 4] {
+    for part in [&MAGIC, &version.to_le_bytes(), &length.to_le_bytes(), payload] as [&[u8]; 4] {
         bytes.extend_from_slice(part).map_err(|_| RecordError::TooLarge)?;
     }
     let checksum = CRC.checksum(&bytes).to_le_bytes();
@@ -153,12 +161,18 @@ pub fn encode(origin: &Origin, calibration: &AcceptedCalibration) -> Result<Byte
 /// [`RecordError`] says what is wrong with them.
 pub fn decode(bytes: &[u8]) -> Result<Record, RecordError> {
     let (version, payload) = unwrap(bytes)?;
-    let payload: v1::Payload = match version {
-        1 => postcard::from_bytes(payload).map_err(|_| RecordError::Malformed { version })?,
-        0 => return Err(RecordError::Malformed { version }),
+    let malformed = RecordError::Malformed { version };
+    match version {
+        0 => return Err(malformed),
+        1..=VERSION => {}
         _ => return Err(RecordError::Newer { version }),
-    };
-    let (origin, calibration) = payload.unpack();
+    }
+    let (first, rest) = postcard::take_from_bytes::<v1::Payload>(payload).map_err(|_| malformed)?;
+    let (origin, mut calibration) = first.unpack();
+    if version > 1 {
+        let felt = postcard::from_bytes(rest).map_err(|_| malformed)?;
+        calibration.g_sensitivity = Some(v2::unpack(&felt));
+    }
     check_finite(&origin, &calibration)?;
     Ok(Record { origin, calibration: AcceptedCalibration::new(calibration) })
 }

@@ -109,10 +109,7 @@ impl<'t, const R: usize, const S: usize> Session<'t, R, S> {
     /// One sample; `clipped`: channels at an end of their range ([`crate::tape::Segment::clipped`]).
     pub fn sample(&mut self, sample: &Sample, clipped: u8) {
         if let (Some(verifier), Some(calibration)) = (&mut self.verifier, &self.in_force) {
-            let mut compensated = *sample;
-            compensated.angular_rate_rad_s = calibration.gyroscope.triad.compensate(&sample.angular_rate_rad_s);
-            compensated.specific_force_mps2 = calibration.accelerometer.triad.compensate(&sample.specific_force_mps2);
-            verifier.sample(&compensated);
+            verifier.sample(&calibration.compensate(sample));
         }
         let events = if self.recording {
             self.tape.note_temperature(sample.temperature_degc);

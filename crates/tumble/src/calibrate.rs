@@ -49,14 +49,14 @@ impl Session<'_> {
 
     /// Computes it with any method. A reference starts from the device's result and noise, and is judged by the same judge.
     pub fn run(&self, method: Method, progress: &mut impl FnMut(f32)) -> Outcome {
+        let settled = self.settle(progress);
         let conditions = match method {
             Method::Gravity => Conditions { faces: BoxFaces::Unknown, ..self.conditions },
             Method::TwoStep(_) => Conditions { faces: BoxFaces::Square, ..self.conditions },
-            Method::Device | Method::Batch => self.conditions,
+            Method::Device | Method::Batch => settled.conditions,
         };
-        let settled = self.settle(progress);
         let tape = &settled.tape;
-        let first = match conditions == self.conditions {
+        let first = match conditions == settled.conditions {
             true => settled.estimate.clone(),
             false => settle::estimate(tape, conditions, progress),
         };
@@ -80,6 +80,14 @@ impl Session<'_> {
         if let Some(full_us) = settled.full_us {
             let full_s = seconds(full_us, self.origin_s);
             outcome.warn(format!("The session's memory was full at {full_s:.1} s: what came later was left out."));
+        }
+        let boxless = self.conditions.frame() != conditions.frame() && !matches!(method, Method::Gravity);
+        if boxless && outcome.verdict != Verdict::Rejected {
+            outcome.warn(
+                "The box was called square, but fewer than three of its faces lay on the table: the numbers are given in the \
+                 accelerometer's own axes. For the box's axes lay it on at least three faces."
+                    .into(),
+            );
         }
         if settled.trembles() {
             let tolerance = settled.tolerance;

@@ -5,6 +5,7 @@ use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, Estimator, Progress, judge};
 use tumble_core::motion::MotionEvent;
 use tumble_core::motion::segmenter::Segmenter;
+use tumble_core::setup::BoxFaces;
 use tumble_core::tape::Tape;
 
 use crate::recording::{Metadata, Reading};
@@ -17,6 +18,9 @@ const SEGMENTS: usize = 1024;
 /// times the sensor's noise (0.3 °/s) and tell a person to let go; a recording cannot be told, and a hand's tremor of
 /// 0.05° at 8–12 Hz (Elble & Koller 1990) is 3 °/s. Four times is where slow motion begins to pass for rest.
 const TOLERANCES: [f32; 3] = [1.0, 2.0, 4.0];
+/// Nobody calls a box square whose faces err by so much (one sigma), rad: 1.5°. Poses that are taken for faces on a table lie within 6° of
+/// each other (`estimate/facets.rs`), which is 2.4° in the mean square if they lie anywhere in there.
+const NO_BOX: f32 = 0.026;
 /// Records walked between two signs of life.
 const SLICE: usize = 64;
 
@@ -46,7 +50,9 @@ pub struct Settled {
     pub full_us: Option<u64>,
     /// Stillness limits in units of the board's.
     pub tolerance: f32,
-    /// Under the session's own conditions.
+    /// What the estimate was made under: the session's own conditions, but that a box of which nothing is seen is not known to be square.
+    pub conditions: Conditions,
+    /// Under these.
     pub estimate: Estimated,
 }
 
@@ -97,9 +103,21 @@ impl Session<'_> {
     pub fn settle_at(&self, tolerance: f32, progress: &mut impl FnMut(f32)) -> Settled {
         let mut tape = Box::new(HostTape::new());
         let full_us = record(self.readings, tolerance, &mut tape);
-        let estimate = estimate(&tape, self.conditions, progress);
-        Settled { tape, full_us, tolerance, estimate }
+        let settled = |conditions, tape, estimate| Settled { tape, full_us, tolerance, conditions, estimate };
+        let boxed = estimate(&tape, self.conditions, progress);
+        if self.conditions.faces != BoxFaces::Square || boxed.as_ref().is_ok_and(|(estimate, _)| shows_box(estimate)) {
+            return settled(self.conditions, tape, boxed);
+        }
+        let boxless = Conditions { faces: BoxFaces::Unknown, ..self.conditions };
+        let estimate = estimate(&tape, boxless, progress);
+        settled(boxless, tape, estimate)
     }
+}
+
+/// Did the faces of a box called square say where its axes are? Not where fewer than three lay on the table, which could not contradict
+/// each other, nor where they err by more than `NO_BOX`: these are poses at random that happen to lie near faces.
+fn shows_box(estimate: &Estimate) -> bool {
+    estimate.plated && estimate.noise.facet_sigma_rad.is_none_or(|sigma| sigma < NO_BOX)
 }
 
 /// Puts readings on a tape with the stillness limits at `tolerance` times the usual; if it was full before the end, the stamp
@@ -149,6 +167,5 @@ const fn wants_rest(reason: &Reason) -> bool {
             | Reason::TurnsMissing { .. }
             | Reason::NotObservable { .. }
             | Reason::Uncertain { .. }
-            | Reason::BiasDrift { .. }
     )
 }

@@ -8,6 +8,7 @@ const ACCEL: [[f32; 3]; 3] = [[1.01, 0.002, -0.003], [0.004, 0.99, 0.005], [-0.0
 const GYRO: [[f32; 3]; 3] = [[0.98, 0.01, 0.02], [-0.01, 1.03, 0.015], [0.005, -0.02, 1.0]];
 const ACCEL_BIAS: [f32; 3] = [0.5, -0.25, 0.125];
 const GYRO_BIAS: [f32; 3] = [0.01, 0.02, -0.03];
+const FELT: [[f32; 3]; 3] = [[1e-4, -2e-4, 3e-5], [4e-5, 1.5e-4, -6e-5], [7e-5, -8e-5, 9e-5]];
 
 fn report() -> Report {
     let some = |m: [[f32; 3]; 3]| m.map(|row| row.map(Some));
@@ -27,7 +28,8 @@ fn report() -> Report {
             correction: some(GYRO),
             correction_sigma: some([[1e-4; 3]; 3]),
             observable: [[true; 3]; 3],
-            g_sensitivity_rad_s_per_mps2: None,
+            g_sensitivity_rad_s_per_mps2: Some(FELT),
+            g_sensitivity_sigma_rad_s_per_mps2: None,
         }),
         ..Report::refused(Vec::new())
     }
@@ -58,6 +60,8 @@ fn kalibr_s_model_gives_the_raw_reading_back() {
     let wanted = |m: [[f32; 3]; 3]| Matrix3::from_fn(|i, j| f64::from(m[i][j])).try_inverse().expect("regular");
     assert!((m_accel * rotation - wanted(ACCEL)).norm() < 1e-9, "{text}");
     assert!((m_gyro * c_gyro * rotation - wanted(GYRO)).norm() < 1e-9, "{text}");
+    let felt = Matrix3::from_fn(|i, j| f64::from(FELT[i][j]));
+    assert!((matrix(gyro, "A:") * rotation - felt).norm() < 1e-12, "of the force in the box's axes: {text}");
     assert_eq!((m_accel[(0, 1)].abs() < 1e-12, m_gyro[(0, 2)].abs() < 1e-12), (true, true), "lower-triangular");
 }
 
@@ -95,7 +99,7 @@ fn autopilots_get_their_own_axes() {
         assert!(inav.contains(line), "{line} is not in\n{inav}");
     }
     for text in [px4, ardupilot, inav] {
-        assert!(text.contains("Left out") && text.contains("3.00 %"), "{text}");
+        assert!(text.contains("Left out") && text.contains("3.00 %") && text.contains("0.112 deg/s a g"), "{text}");
     }
 }
 
@@ -104,6 +108,9 @@ fn json_and_c_carry_every_number() {
     let object: serde_json::Value = serde_json::from_str(&text(Format::Json)).expect("JSON");
     assert_eq!(object["gyroscope"]["correction"][2][1].as_f64().map(|v| v as f32), Some(GYRO[2][1]));
     let c = text(Format::C);
+    let felt = &object["gyroscope"]["g_sensitivity_rad_s_per_mps2"];
+    assert_eq!(felt[2][1].as_f64().map(|v| v as f32), Some(FELT[2][1]));
+    assert!(c.contains("tumble_gyro_g_sensitivity[3][3]") && c.contains("tumble_unfelt("), "{c}");
     assert!(c.contains("tumble_gyro_correction[3][3]") && c.contains("static inline void tumble_compensate"), "{c}");
 }
 
@@ -123,7 +130,16 @@ fn the_board_s_lines_say_the_same_as_the_tool_s_json() {
             }
         }
     }
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        let (row, column) = (axes[i], axes[j]);
+        let value = FELT[i][j];
+        let line = format!(
+            "name=gyro_g_sensitivity_{row}{column} value={value:e} sigma=1e-6 unit=(rad/s)/(m/s^2) observable=yes"
+        );
+        lines += &format!("@param {line}\r\n");
+    }
     let board = Parameters::parse(&lines).expect("the protocol's lines");
+    assert_eq!(board.g_sensitivity, parameters().g_sensitivity);
     let close = |a: &str, b: &str| (a.parse::<f64>().ok(), b.parse::<f64>().ok());
     let (from_board, from_tool) = (export(&board, Format::Px4).expect("all there"), text(Format::Px4));
     for (a, b) in from_board.split_whitespace().zip(from_tool.split_whitespace()) {

@@ -4,26 +4,24 @@
 //! §2). Here a pass is linear about a fixed nominal, which makes the passes Gauss–Newton steps of the maximum a posteriori
 //! problem; the prior stays where the first pass had it.
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::SMatrix;
 
 use super::facets::{CONTACT, SQUARE};
 use super::model::Nominal;
 use super::noise::{Noise, PIVOT_FLOOR};
 use super::prior::{self, CORRECTION_SIGMA};
+use super::resting::{Account, FELT};
 use super::start;
 use super::state::Block;
 use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::EARTH_SIGMA;
 use super::wander::Found;
-use crate::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
-use crate::motion::segmenter::mean_force;
+use crate::calibration::{Calibration, Frame};
 use crate::order::median;
 use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::Tape;
 
-/// A number is "not observable" where the data bring less than 99 % of what is known of it.
-const OBSERVABLE: f32 = 0.1 * CORRECTION_SIGMA;
 /// At least this many passes: three to come near, one to judge the noise, one to confirm.
 const MIN_PASSES: u32 = 5;
 /// At most this many, so that any session is done in ten seconds at 96 MHz: a full tape takes some 48 M instructions a pass in
@@ -80,6 +78,8 @@ pub struct Estimate {
     pub noise: Noise,
     /// Moves that were down-weighted: segment, and by what factor of variance. The eight first.
     pub outliers: heapless::Vec<(u16, f32), 8>,
+    /// Did enough faces lie on the table for a square box's axes to be seen?
+    pub plated: bool,
     /// Passes made.
     pub passes: u32,
     /// False if parameters still moved in the last pass.
@@ -95,19 +95,21 @@ pub struct Breakdown(pub &'static str);
 /// Runs in slices.
 #[derive(Clone, Debug)]
 pub struct Estimator<const S: usize> {
-    conditions: Conditions,
-    noise: Noise,
+    pub(super) conditions: Conditions,
+    pub(super) noise: Noise,
     start: Nominal,
-    walk: Walk<S>,
-    passes: u32,
+    pub(super) walk: Walk<S>,
+    pub(super) passes: u32,
     /// By what factors the last pass changed the sigmas of wobble and stops.
     steps: [f32; 3],
     /// … and of a face.
     facet_step: f32,
     /// The gyroscope's bias has probably wandered, though perhaps not certainly enough for the filter.
-    bias_wanders: bool,
-    /// It has certainly drifted.
-    slope_certain: bool,
+    pub(super) bias_wanders: bool,
+    /// What the last pass made of the rates at rest, without and with a sensitivity to force, …
+    accounts: [Option<Account>; 2],
+    /// … and which of the two stands.
+    pub(super) felt: bool,
 }
 
 /// Where a run stands.
@@ -139,7 +141,8 @@ impl<const S: usize> Estimator<S> {
             steps: [1.0; 3],
             facet_step: 1.0,
             bias_wanders: false,
-            slope_certain: false,
+            accounts: [Some(Account::default()), None],
+            felt: false,
         });
         prior::begin(&mut new.walk.filter, &conditions, &start, &start);
         new.walk.restart(start);
@@ -170,6 +173,7 @@ impl<const S: usize> Estimator<S> {
         begin(&mut self.walk.filter, &self.conditions, &self.start, &nominal);
         let plated = self.walk.pass.facets.agree_or_not();
         self.walk.restart(nominal);
+        self.walk.pass.accounts = self.accounts;
         self.walk.pass.plated = plated;
         self.walk.pass.coarse = self.passes < 2;
         Ok(Progress::Working(self.passes as f32 / MIN_PASSES as f32))
@@ -181,7 +185,7 @@ impl<const S: usize> Estimator<S> {
     }
 
     /// The largest step of this pass over its sigma.
-    fn largest_move(&self) -> f32 {
+    pub(super) fn largest_move(&self) -> f32 {
         let (state, covariance) = (self.walk.filter.state(), self.walk.filter.covariance());
         let blocks = [Block::GyroCorrection, Block::AccelCorrection, Block::AccelBias];
         blocks.into_iter().flat_map(Block::range).fold(0.0, |largest, index| {
@@ -211,20 +215,41 @@ impl<const S: usize> Estimator<S> {
 
     /// Biases that walk. To believe in a walk that is not there costs the accelerometer a factor of four.
     fn wander(&mut self) {
-        let (rate, force) = (self.walk.pass.rate_walk.found(), self.walk.pass.force_walk.found());
+        let (rate, force) =
+            (self.walk.pass.rate_walks[usize::from(self.felt)].found(), self.walk.pass.force_walk.found());
         self.bias_wanders = rate.is_some_and(|walk| walk.probable());
         let certain = |walk: Option<Found>| walk.filter(Found::certain).map_or(0.0, |walk| walk.density);
         self.noise.set_bias_walk(certain(rate));
         self.noise.set_force_walk(certain(force));
     }
 
-    /// What other noise would otherwise be blamed for: a bias that drifts, a box that is not square.
+    /// Which account of the rates at rest stands: the one with a sensitivity to force has nine numbers more, each of them free under the
+    /// walk that fits it best, so that twice the logarithm of the likelihoods' ratio is χ²₉ of noise or of a walk alone.
+    fn weigh_accounts(&mut self, session_s: f32) {
+        let pass = &self.walk.pass;
+        let [plain, felt] = [0, 1].map(|k| pass.accounts[k].and(pass.rate_walks[k].found()));
+        self.felt =
+            plain.zip(felt).is_some_and(|(plain, felt)| 2.0 * (felt.log_likelihood - plain.log_likelihood) > FELT);
+        let resting = &pass.resting;
+        let gravity = self.conditions.gravity_mps2;
+        self.accounts = [resting.plain(EARTH_SIGMA), resting.felt(EARTH_SIGMA, gravity)];
+        if let Some(account) = &mut self.accounts[1] {
+            account.sensitivity.widen(self.noise.bias_walk * session_s / (gravity * gravity));
+        }
+        if let Some(account) = &self.accounts[usize::from(self.felt)] {
+            self.noise.set_account(account, session_s, resting.visits, gravity);
+        }
+    }
+
+    /// The one that stands.
+    pub(super) fn account(&self) -> Option<&Account> {
+        self.accounts[usize::from(self.felt)].as_ref()
+    }
+
+    /// What other noise would otherwise be blamed for: a bias that drifts or follows force, a box that is not square.
     fn straighten<const R: usize>(&mut self, tape: &Tape<R, S>) {
-        if let (Some(slope), [first, .., last]) =
-            (self.walk.pass.drift.slope(self.noise.rate_density, EARTH_SIGMA), tape.segments())
-        {
-            self.slope_certain = slope.certain;
-            self.noise.set_slope(&slope, (last.end_us - first.start_us) as f32 * 1e-6);
+        if let [first, .., last] = tape.segments() {
+            self.weigh_accounts((last.end_us - first.start_us) as f32 * 1e-6);
         }
         // The start is 20 mrad off, which is no box's fault; the first pass leaves its square, 0.4 mrad.
         let shear = self.shear_variance();
@@ -296,80 +321,6 @@ impl<const S: usize> Estimator<S> {
             noise.rate_scale = scale;
         }
         steady
-    }
-
-    fn estimate<const R: usize>(&self, tape: &Tape<R, S>, nominal: &Nominal, converged: bool) -> Estimate {
-        let covariance = self.covariance();
-        let sigma = |index: usize| libm::sqrtf(covariance[(index, index)].max(0.0));
-        let triad = |triad: &Triad, first: usize| {
-            let correction_sigma = Matrix3::from_fn(|i, j| sigma(first + 3 + 3 * i + j));
-            TriadEstimate {
-                triad: *triad,
-                bias_sigma: Vector3::from_fn(|i, _| sigma(first + i)),
-                correction_sigma,
-                observable: core::array::from_fn(|i| core::array::from_fn(|j| correction_sigma[(i, j)] < OBSERVABLE)),
-            }
-        };
-        let mut gyroscope = triad(&nominal.gyro, 12);
-        if self.bias_wanders || self.slope_certain {
-            // The session's bias is its mean, and the sigma that is said of it tells how far it wandered.
-            let (mean, spread) = start::resting_rate(tape);
-            if self.bias_wanders {
-                // The filter's is the last. What drifts straight it has at the session's middle.
-                gyroscope.triad.bias = mean;
-            }
-            gyroscope.bias_sigma = gyroscope.bias_sigma.zip_map(&spread, libm::hypotf);
-        }
-        Estimate {
-            calibration: Calibration {
-                accelerometer: triad(&nominal.accel, 0),
-                gyroscope,
-                frame: self.conditions.frame(),
-                temperature_degc: tape.temperature_degc(),
-                fit: self.fit(tape, nominal),
-            },
-            covariance,
-            noise: self.noise,
-            outliers: (0u16..)
-                .zip(&self.walk.noise)
-                .filter(|(_, noise)| noise.rate_scale > 1.0)
-                .map(|(segment, noise)| (segment, noise.rate_scale))
-                .take(8)
-                .collect(),
-            passes: self.passes,
-            converged,
-            moved: self.largest_move(),
-        }
-    }
-
-    fn covariance(&self) -> SMatrix<f32, PARAMETERS, PARAMETERS> {
-        let blocks = [Block::AccelBias, Block::AccelCorrection, Block::GyroBias, Block::GyroCorrection];
-        let mut order = [0usize; PARAMETERS];
-        for (to, from) in order.iter_mut().zip(blocks.into_iter().flat_map(Block::range)) {
-            *to = from;
-        }
-        SMatrix::from_fn(|i, j| self.walk.filter.covariance()[(order[i], order[j])])
-    }
-
-    fn fit<const R: usize>(&self, tape: &Tape<R, S>, nominal: &Nominal) -> Fit {
-        let (mut squares, mut largest, mut count) = (0.0f32, 0.0f32, 0.0f32);
-        for segment in tape.segments().iter().filter(|segment| segment.is_usable_still()) {
-            let raw = mean_force(tape, usize::from(segment.first), usize::from(segment.end));
-            let error = nominal.accel.compensate(&raw).norm() - self.conditions.gravity_mps2;
-            squares += error * error;
-            largest = largest.max(libm::fabsf(error));
-            count += 1.0;
-        }
-        let sums = self.walk.pass.sums;
-        let moves = self.walk.noise.iter().filter(|noise| noise.hinge_nis.is_finite());
-        let (hinge, dof) =
-            moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
-        Fit {
-            nis_per_dof: (sums.rest.0 + hinge) / (sums.rest.1 + dof).max(1.0),
-            gravity_rms_mps2: libm::sqrtf(squares / count.max(1.0)),
-            gravity_max_mps2: largest,
-            turn_closure_rms_rad: libm::sqrtf(sums.closed.0 / sums.closed.1.max(1.0)),
-        }
     }
 }
 

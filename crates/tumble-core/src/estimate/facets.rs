@@ -15,7 +15,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::likelihood::{CERTAIN, Likelihood};
-use super::normal::{Normal, mean_variance};
+use super::normal::{Normal, Unknowns, mean_variance};
 use crate::motion::path::WHOLE_TURN;
 
 /// A face of a box that its owner calls square, rad: 0.5 µm on 5 cm.
@@ -126,7 +126,7 @@ impl Facets {
         let mut all = *self;
         all.end_visit();
         let noise = all.noise / all.count;
-        if all.count - (all.normal.clone().eliminate(TABLE_AND_FRAME).0 as f32) < 1.0 {
+        if all.count - (all.normal.clone().eliminate(Unknowns::range(0, TABLE_AND_FRAME)).0 as f32) < 1.0 {
             return None;
         }
         let prior = (1.0 / shear - 4.0 / (noise + sigma * sigma)).max(0.01 / shear);
@@ -145,7 +145,7 @@ impl Facets {
         let mut normal = self.normal;
         let sigma = 1.0 / libm::sqrtf(variance * prior);
         (TABLE_AND_FRAME..UNKNOWNS).for_each(|shear| normal.expect(shear, sigma));
-        let (rank, log_determinant) = normal.eliminate(UNKNOWNS);
+        let (rank, log_determinant) = normal.eliminate(Unknowns::range(0, UNKNOWNS));
         let squares = normal.at(UNKNOWNS, UNKNOWNS) / variance;
         -0.5 * ((self.count - rank as f32) * libm::logf(variance) + log_determinant + squares)
     }

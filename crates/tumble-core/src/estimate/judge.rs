@@ -1,6 +1,7 @@
 //! The verdict: apart from the estimate, and the only way to a calibration that can be stored.
 
 use heapless::Vec;
+use nalgebra::Vector3;
 
 use super::device::Estimate;
 use super::noise;
@@ -8,8 +9,8 @@ use crate::DEGREE_RAD;
 use crate::calibration::{AcceptedCalibration, Calibration, Judgement, Reason, Verdict};
 use crate::face::{Face, FaceSet};
 use crate::motion::path::whole_turns;
-use crate::motion::segmenter::mean_rate;
-use crate::tape::{Exclusion, Kind, Tape};
+use crate::motion::segmenter::{mean_force, mean_rate};
+use crate::tape::{Exclusion, Kind, Segment, Tape};
 
 /// A correction's diagonal is 1 within 3 % and its other elements 0 within 2 % (sheet), a chip sits askew by at most 3°;
 /// beyond thrice that something else is wrong: a range, a unit, an axis.
@@ -109,13 +110,25 @@ fn warn_of_the_session<const R: usize, const S: usize>(
         .filter(|segment| segment.is_usable_still() && noise::is_solid(segment, estimate.noise.quiet_variance));
     if let Some(first) = stills.next() {
         let last = stills.next_back().unwrap_or(first);
-        let [first, last] = [first, last].map(|s| mean_rate(tape, usize::from(s.first), usize::from(s.end)));
+        let [first, last] = [first, last].map(|still| resting_rate(tape, still, &estimate.calibration));
         let drift = last - first;
         let axis = drift.iamax();
         if libm::fabsf(drift[axis]) > DRIFT_LIMIT {
             bench.warn(Reason::BiasDrift { axis: axis as u8, drift_rad_s: drift[axis] });
         }
     }
+}
+
+/// A rest's mean raw rate less what force makes of it.
+fn resting_rate<const R: usize, const S: usize>(
+    tape: &Tape<R, S>,
+    still: &Segment,
+    calibration: &Calibration,
+) -> Vector3<f32> {
+    let (first, end) = (usize::from(still.first), usize::from(still.end));
+    let force = calibration.accelerometer.triad.compensate(&mean_force(tape, first, end));
+    let felt = calibration.g_sensitivity.map_or(Vector3::zeros(), |felt| felt.matrix * force);
+    mean_rate(tape, first, end) - felt
 }
 
 /// Numbers that are less sure than a user expects.

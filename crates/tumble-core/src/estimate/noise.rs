@@ -1,10 +1,10 @@
 //! What noise the session shows: from the scatter of its own rests first, from innovations later.
 
 use heapless::Vec;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::drift::Slope;
 use super::facets::{CONTACT, SQUARE};
+use super::resting::Account;
 use super::scatter::{pooled, scatter};
 use super::wobble::UNSEEN;
 use crate::DEGREE_RAD;
@@ -51,8 +51,10 @@ pub struct Noise {
     pub bias_walk: f32,
     /// Straight part of the gyroscope bias's drift, (rad/s)/s.
     pub bias_slope: Vector3<f32>,
-    /// What is added to `bias_walk` because the slope is not exactly known, (rad/s)²/s.
-    pub slope_walk: f32,
+    /// How the gyroscope's bias follows the specific force, (rad/s)/(m/s²); zero where nothing says that it does.
+    pub g_sensitivity: Matrix3<f32>,
+    /// What is added to `bias_walk` because neither is exactly known, (rad/s)²/s.
+    pub account_walk: f32,
     /// Growth of an accelerometer bias's variance, (m/s²)²/s.
     pub force_walk: f32,
     /// Factor on `rate_density` while it moves.
@@ -105,7 +107,8 @@ impl Noise {
             force_density: density(pooled(&mut force), SHEET_FORCE_DENSITY, FORCE_UNIT_MPS2 * REST_RECORD_S),
             bias_walk: WALK_FLOOR,
             bias_slope: Vector3::zeros(),
-            slope_walk: 0.0,
+            g_sensitivity: Matrix3::zeros(),
+            account_walk: 0.0,
             force_walk: FORCE_WALK_FLOOR,
             motion_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
@@ -170,16 +173,20 @@ impl Noise {
         Some(self.contact_sigma_rad).filter(|sigma| *sigma > LEAST_LEAN_RAD)
     }
 
-    /// The bias's drift over a session of `session_s`. A slope's error δs grows with the time from the session's middle, with a mean
-    /// square of δs² T²/12; a walk about its own mean has q T/6. Thus a walk of δs² T/2 stands for it.
-    pub fn set_slope(&mut self, slope: &Slope, session_s: f32) {
-        self.bias_slope = slope.rate;
-        self.slope_walk = 0.125 * slope.variance * session_s;
+    /// The account of the rates at rest that stands, of a session of this length with so many stays on faces. A slope's error δs grows
+    /// with the time from the session's middle, with a mean square of δs² T²/12; a walk about its own mean has q T/6. Thus a walk of
+    /// δs² T/2 stands for it; held by rests on both sides it errs by a quarter. An error δG shows as an offset of each stay by itself, `δG f`, which
+    /// the stay's own rests tell as well as all rests together do: two stays T/n apart differ by 2 δG² g², and so does a walk.
+    pub fn set_account(&mut self, account: &Account, session_s: f32, visits: f32, gravity_mps2: f32) {
+        self.bias_slope = account.slope.rate;
+        self.g_sensitivity = account.sensitivity.matrix;
+        let offset = account.sensitivity.sigma.norm_squared() / 9.0 * gravity_mps2 * gravity_mps2;
+        self.account_walk = 0.125 * account.slope.variance * session_s + 2.0 * offset * visits / session_s.max(1.0);
     }
 
     /// All that a gyroscope bias's variance grows by, (rad/s)²/s.
     pub fn total_bias_walk(&self) -> f32 {
-        self.bias_walk + self.slope_walk
+        self.bias_walk + self.account_walk
     }
 }
 

@@ -7,6 +7,33 @@ pub struct Normal<const N: usize> {
     sums: [[f32; N]; N],
 }
 
+/// Some of the unknowns, a bit each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unknowns(u32);
+
+impl Unknowns {
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    /// From the first to before the last.
+    pub const fn range(first: usize, end: usize) -> Self {
+        Self((1 << end) - (1 << first))
+    }
+
+    /// These and those.
+    pub const fn and(self, others: Self) -> Self {
+        Self(self.0 | others.0)
+    }
+
+    const fn without(self, one: usize) -> Self {
+        Self(self.0 & !(1 << one))
+    }
+
+    const fn has(self, one: usize) -> bool {
+        self.0 & (1 << one) != 0
+    }
+}
+
 impl<const N: usize> Default for Normal<N> {
     fn default() -> Self {
         Self { sums: [[0.0; N]; N] }
@@ -28,25 +55,33 @@ impl<const N: usize> Normal<N> {
         self.sums[unknown][unknown] += 1.0 / (sigma * sigma);
     }
 
-    /// Eliminates the first `count` unknowns; returns how many of them the data determine at all, and the logarithm of these ones'
-    /// determinant.
-    pub fn eliminate(&mut self, count: usize) -> (usize, f32) {
+    /// Eliminates unknowns; returns how many of them the data determine at all, and the logarithm of these ones' determinant.
+    pub fn eliminate(&mut self, unknowns: Unknowns) -> (usize, f32) {
         let (mut rank, mut log_determinant) = (0, 0.0);
         let own: [f32; N] = core::array::from_fn(|index| self.sums[index][index]);
-        for pivot in 0..count {
+        for (pivot, own) in own.iter().enumerate().filter(|(pivot, _)| unknowns.has(*pivot)) {
             let row = self.sums[pivot];
             // What elimination left of a pivot below this is rounding.
-            if row[pivot] <= 1e-5 * own[pivot] {
+            if row[pivot] <= 1e-5 * own {
                 continue;
             }
             rank += 1;
             log_determinant += libm::logf(row[pivot]);
-            for (index, sums) in self.sums.iter_mut().enumerate().skip(pivot + 1) {
+            for (index, sums) in self.sums.iter_mut().enumerate().filter(|(index, _)| *index != pivot) {
                 let share = row[index] / row[pivot];
                 sums.iter_mut().zip(&row).for_each(|(sum, value)| *sum -= share * value);
             }
         }
         (rank, log_determinant)
+    }
+
+    /// Value and variance of one unknown with `others` free; none where the data do not determine it.
+    pub fn marginal(&self, unknown: usize, others: Unknowns) -> Option<(f32, f32)> {
+        let mut left = *self;
+        left.eliminate(others.without(unknown));
+        let information = left.at(unknown, unknown);
+        let determined = information > 1e-5 * self.at(unknown, unknown);
+        determined.then(|| (left.at(unknown, N - 1) / information, 1.0 / information))
     }
 
     /// An element.
@@ -94,7 +129,9 @@ mod tests {
         for (x, y) in [(0.0, 1.0), (1.0, 3.1), (2.0, 4.9), (3.0, 7.0)] {
             normal.take(&[1.0, x, y], 4.0);
         }
-        assert_eq!(normal.eliminate(1), (1, libm::logf(16.0)));
+        let (slope, variance) = normal.marginal(1, Unknowns::range(0, 2)).expect("two unknowns");
+        assert!((slope - 1.98).abs() < 1e-5 && (variance - 1.0 / 20.0).abs() < 1e-6, "{slope} {variance}");
+        assert_eq!(normal.eliminate(Unknowns::range(0, 1)), (1, libm::logf(16.0)));
         assert!((normal.at(1, 2) / normal.at(1, 1) - 1.98).abs() < 1e-5);
         assert!((normal.at(1, 1) - 4.0 * 5.0).abs() < 1e-5);
         assert!((normal.at(2, 2) - normal.at(1, 2) * 1.98 - 4.0 * 0.018).abs() < 1e-3, "{}", normal.at(2, 2));

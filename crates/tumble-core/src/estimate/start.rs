@@ -10,7 +10,7 @@ use crate::tape::{Exclusion, Kind, Segment, Tape};
 
 /// The longest usable stills' means by face, and what follows.
 pub fn nominal<const R: usize, const S: usize>(tape: &Tape<R, S>, gravity: f32) -> Nominal {
-    let (bias, _) = resting_rate(tape);
+    let (bias, _) = resting_rate(tape, |_| Vector3::zeros());
     Nominal {
         accel: accelerometer(tape, gravity),
         earth_rad_s: Vector3::zeros(),
@@ -18,11 +18,16 @@ pub fn nominal<const R: usize, const S: usize>(tape: &Tape<R, S>, gravity: f32) 
     }
 }
 
-/// Mean rate over all usable stills, weighted by their length, and one sigma of the stills' own means about it, rad/s.
-pub fn resting_rate<const R: usize, const S: usize>(tape: &Tape<R, S>) -> (Vector3<f32>, Vector3<f32>) {
+/// Mean rate over all usable stills, weighted by their length, and one sigma of the stills' own means about it, rad/s, both less what
+/// the mean raw specific force makes of it.
+pub fn resting_rate<const R: usize, const S: usize>(
+    tape: &Tape<R, S>,
+    felt: impl Fn(&Vector3<f32>) -> Vector3<f32>,
+) -> (Vector3<f32>, Vector3<f32>) {
     let (mut mean, mut squares, mut time) = (Vector3::zeros(), Vector3::zeros(), 0.0);
     for segment in usable_stills(tape) {
-        let rate = mean_rate(tape, usize::from(segment.first), usize::from(segment.end));
+        let (first, end) = (usize::from(segment.first), usize::from(segment.end));
+        let rate = mean_rate(tape, first, end) - felt(&mean_force(tape, first, end));
         let duration = segment.duration_s();
         time += duration;
         // West's recurrence: no difference of large squares.

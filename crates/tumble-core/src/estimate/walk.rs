@@ -137,8 +137,9 @@ impl<const S: usize> Walk<S> {
         if !self.pass.aligned {
             return;
         }
-        self.pass.now.gyro.bias =
-            self.pass.nominal.gyro.bias + noise.bias_slope * (self.pass.time_s + 0.5 * record.dt_s);
+        self.pass.now.gyro.bias = self.pass.nominal.gyro.bias
+            + noise.bias_slope * (self.pass.time_s + 0.5 * record.dt_s)
+            + noise.g_sensitivity * self.pass.nominal.force(record);
         self.pass.time_s += record.dt_s;
         self.filter.diffuse(Block::GyroBias, noise.total_bias_walk() * record.dt_s);
         self.filter.diffuse(Block::AccelBias, noise.force_walk * record.dt_s);

@@ -45,6 +45,8 @@ pub struct Found {
     pub density: f32,
     /// Twice the logarithm of the likelihood's ratio.
     ratio: f32,
+    /// The logarithm of the best likelihood, but for a constant that counts what was seen.
+    pub log_likelihood: f32,
 }
 
 impl Found {
@@ -93,6 +95,7 @@ impl<const N: usize> Wander<N> {
         (self.count > 0.5).then(|| Found {
             density: mean_variance(densities(self.least), self.count / self.information, 1.0, |index, _| logs[index]),
             ratio: 2.0 * (best - logs[0]),
+            log_likelihood: best,
         })
     }
 }

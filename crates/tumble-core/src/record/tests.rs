@@ -7,7 +7,7 @@ use std::vec::Vec as StdVec;
 use nalgebra::{Matrix3, Vector3};
 
 use super::*;
-use crate::calibration::{Fit, Frame, Triad, TriadEstimate};
+use crate::calibration::{Fit, Frame, GSensitivity, Triad, TriadEstimate};
 use crate::setup::{BoxFaces, TurnStops};
 
 fn triad(offset: f32) -> TriadEstimate {
@@ -34,7 +34,16 @@ fn example() -> (Origin, Calibration) {
     };
     let fit = Fit { nis_per_dof: 1.5, gravity_rms_mps2: 0.25, gravity_max_mps2: 0.5, turn_closure_rms_rad: 0.125 };
     let (accelerometer, gyroscope) = (triad(1.0), triad(100.0));
-    (origin, Calibration { accelerometer, gyroscope, frame: Frame::Box, temperature_degc: 24.0, fit })
+    let calibration =
+        Calibration { accelerometer, gyroscope, g_sensitivity: None, frame: Frame::Box, temperature_degc: 24.0, fit };
+    (origin, calibration)
+}
+
+/// The same with what takes version 2.
+fn felt() -> (Origin, Calibration) {
+    let (origin, calibration) = example();
+    let matrix = |offset: u8| Matrix3::from_fn(|i, j| f32::from(offset) + (3 * i + j) as f32);
+    (origin, Calibration { g_sensitivity: Some(GSensitivity { matrix: matrix(1), sigma: matrix(10) }), ..calibration })
 }
 
 fn encoded() -> Bytes {
@@ -85,6 +94,20 @@ fn version_1_is_what_it_always_was() {
 }
 
 #[test]
+fn version_2_is_version_1_and_the_sensitivity_to_force() {
+    let (origin, calibration) = felt();
+    let bytes = encode(&origin, &AcceptedCalibration::new(calibration)).expect("finite");
+    let mut golden = golden();
+    golden[4] = 2;
+    golden[6..8].copy_from_slice(&(248u16 + 72).to_le_bytes());
+    (1u8..19).for_each(|value| golden.extend_from_slice(&f32::from(value).to_le_bytes()));
+    assert_eq!(bytes[..golden.len()], golden[..]);
+    // By Python's zlib.crc32 of the same bytes.
+    assert_eq!(bytes[golden.len()..], 0x6349_08ae_u32.to_le_bytes());
+    assert_eq!(decode(&bytes), Ok(Record { origin, calibration: AcceptedCalibration::new(calibration) }));
+}
+
+#[test]
 fn any_flipped_bit_and_any_cut_is_found() {
     let bytes = encoded();
     for at in 0..bytes.len() {
@@ -111,10 +134,12 @@ fn resealed(version: u16, payload: &[u8]) -> StdVec<u8> {
 
 #[test]
 fn a_newer_version_is_reported_as_such_and_a_false_payload_too() {
-    let newer = decode(&resealed(2, &[1, 2, 3])).expect_err("newer");
-    assert_eq!(newer, RecordError::Newer { version: 2 });
+    let newer = decode(&resealed(3, &[1, 2, 3])).expect_err("newer");
+    assert_eq!(newer, RecordError::Newer { version: 3 });
     assert!(newer.to_string().contains("Install the newer firmware"), "{newer}");
-    assert_eq!(decode(&resealed(1, &[1, 2, 3])), Err(RecordError::Malformed { version: 1 }));
+    for version in [1, 2] {
+        assert_eq!(decode(&resealed(version, &[1, 2, 3])), Err(RecordError::Malformed { version }));
+    }
     assert_eq!(decode(&resealed(0, &[])), Err(RecordError::Malformed { version: 0 }));
 }
 
@@ -140,11 +165,11 @@ fn what_is_no_finite_number_is_refused_on_both_sides() {
 
 #[test]
 fn the_largest_record_fits_and_versions_are_read() {
-    let (mut origin, calibration) = example();
+    let (mut origin, calibration) = felt();
     origin.generation = u32::MAX;
     origin.firmware = FirmwareVersion { major: u16::MAX, minor: u16::MAX, patch: u16::MAX };
     let bytes = encode(&origin, &AcceptedCalibration::new(calibration)).expect("fits");
-    assert!(bytes.len() <= 290, "{}", bytes.len());
+    assert!(bytes.len() <= 362, "{}", bytes.len());
     assert_eq!(decode(&bytes).expect("whole").origin, origin);
     assert_eq!(FirmwareVersion::parse("1.22.333-rc1").to_string(), "1.22.333");
     assert_eq!(FirmwareVersion::parse("one"), FirmwareVersion::default());

@@ -61,11 +61,11 @@ impl TriadV1 {
 }
 
 /// nalgebra stores by columns.
-fn rows(m: &Matrix3<f32>) -> [[f32; 3]; 3] {
+pub(super) fn rows(m: &Matrix3<f32>) -> [[f32; 3]; 3] {
     m.transpose().into()
 }
 
-fn matrix(rows: &[[f32; 3]; 3]) -> Matrix3<f32> {
+pub(super) fn matrix(rows: &[[f32; 3]; 3]) -> Matrix3<f32> {
     Matrix3::from(*rows).transpose()
 }
 
@@ -111,6 +111,7 @@ impl Payload {
         let calibration = Calibration {
             accelerometer: self.accelerometer.unpack(),
             gyroscope: self.gyroscope.unpack(),
+            g_sensitivity: None,
             frame: if self.frame_is_box { Frame::Box } else { Frame::Accelerometer },
             temperature_degc: self.temperature_degc,
             fit: Fit { nis_per_dof, gravity_rms_mps2, gravity_max_mps2, turn_closure_rms_rad },

@@ -40,6 +40,7 @@ fn estimate(bias_sigma: f32, correction_sigma: f32) -> TriadEstimate {
 /// As the estimator achieves: 20 µg and 30 ppm, 2 mdps and 40 ppm.
 fn calibration() -> Calibration {
     Calibration {
+        g_sensitivity: None,
         accelerometer: estimate(2e-4, 30e-6),
         gyroscope: estimate(2e-3 * DEGREE_RAD, 40e-6),
         frame: Frame::Box,

@@ -42,9 +42,13 @@ fn fitted(parameters: &Parameters, axes: Axes) -> Result<Fitted, ExportError> {
 /// What these programs have no parameter for.
 fn left_out(parameters: &Parameters) -> Result<String, ExportError> {
     let gyro_scale = (parameters.gyroscope.scale()?.map(|v| v - 1.0)).amax();
+    let felt = parameters.g_sensitivity.map_or(String::new(), |felt| {
+        let largest = felt.amax().to_degrees() * crate::recording::STANDARD_GRAVITY_MPS2;
+        format!("# And the gyroscope's sensitivity to force (up to {largest:.3} deg/s a g).\n")
+    });
     Ok(format!(
         "# Left out, for want of a parameter: gyroscope scale (up to {:.2} %), cross-axis of accelerometer (up to {:.4}) and\n\
-         # gyroscope (up to {:.4}).\n",
+         # gyroscope (up to {:.4}).\n{felt}",
         100.0 * gyro_scale,
         parameters.accelerometer.largest_cross(),
         parameters.gyroscope.largest_cross()

@@ -29,7 +29,8 @@ pub(super) fn text(parameters: &Parameters) -> Result<String, ExportError> {
         array(&parameters.gyroscope),
         rows(&rotation_i_from_b, "  ", ", 0.0"),
         rows(&m_accel, "    ", ""),
-        rows(&Matrix3::zeros(), "    ", ""),
+        // A·f_i = G·f_b.
+        rows(&(parameters.g_sensitivity.unwrap_or_default() * rotation_i_from_b.transpose()), "    ", ""),
         rows(&c_gyro_i, "    ", ""),
         rows(&m_gyro, "    ", ""),
     ))

@@ -25,6 +25,8 @@ pub struct Parameters {
     pub accelerometer: Triad,
     /// rad/s.
     pub gyroscope: Triad,
+    /// What is to be taken off the raw rate for the compensated specific force, (rad/s)/(m/s²), where there is such a thing.
+    pub g_sensitivity: Option<Matrix3<f64>>,
     /// `box` or `accelerometer`, where it is said.
     pub frame: Option<String>,
     /// Where it is said.
@@ -84,6 +86,7 @@ impl Parameters {
         Ok(Self {
             accelerometer: triad("accel", &accel.bias_mps2, &accel.correction),
             gyroscope: triad("gyro", &gyro.bias_rad_s, &gyro.correction),
+            g_sensitivity: gyro.g_sensitivity_rad_s_per_mps2.map(|rows| Matrix3::from_fn(|i, j| f64::from(rows[i][j]))),
             frame: report.frame.clone(),
             temperature_degc: report.temperature_degc.map(f64::from),
         })
@@ -104,10 +107,21 @@ impl Parameters {
         Ok(Self {
             accelerometer: named("accel", &get)?,
             gyroscope: named("gyro", &get)?,
+            g_sensitivity: felt(&numbers),
             frame: None,
             temperature_degc: numbers.get("calibration_temperature").copied().flatten(),
         })
     }
+}
+
+/// All nine or none.
+fn felt(numbers: &HashMap<String, Option<f64>>) -> Option<Matrix3<f64>> {
+    let mut matrix = Matrix3::zeros();
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        let axes = ["x", "y", "z"];
+        matrix[(i, j)] = numbers.get(&format!("gyro_g_sensitivity_{}{}", axes[i], axes[j])).copied().flatten()?;
+    }
+    Some(matrix)
 }
 
 fn triad(name: &'static str, bias: &Vector, correction: &Matrix) -> Triad {

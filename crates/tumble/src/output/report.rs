@@ -49,7 +49,9 @@ impl Report {
     #[must_use]
     pub fn carrying(mut self, carried: Vec<Carried>) -> Self {
         if let Some(gyroscope) = &mut self.gyroscope {
-            gyroscope.g_sensitivity_rad_s_per_mps2 = g_sensitivity(&carried);
+            if let Some(felt) = g_sensitivity(&carried) {
+                gyroscope.g_sensitivity_rad_s_per_mps2 = Some(felt);
+            }
             self.with = carried;
         }
         self
@@ -84,8 +86,11 @@ pub struct GyroscopeReport {
     pub correction_sigma: Matrix,
     /// What the recording determines.
     pub observable: [[bool; 3]; 3],
-    /// Where it was asked for (`--with gyro_g_sensitivity`), else null.
+    /// `ideal = correction · (raw − bias − this · compensated force)`, where the recording certainly shows it, else null.
     pub g_sensitivity_rad_s_per_mps2: Option<[[f32; 3]; 3]>,
+    /// Its one sigma; with `--with gyro_g_sensitivity` it stands in `with`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub g_sensitivity_sigma_rad_s_per_mps2: Option<[[f32; 3]; 3]>,
 }
 
 /// Covariance with the names of its rows.
@@ -139,7 +144,7 @@ impl Report {
             reasons: outcome.reasons.clone(),
             frame: usable.map(|c| frame_name(c.frame).into()),
             accelerometer: usable.map(|c| triad(&c.accelerometer)),
-            gyroscope: usable.map(|c| gyroscope(&c.gyroscope)),
+            gyroscope: usable.map(gyroscope),
             covariance: usable.and(outcome.covariance.as_ref()).map(|matrix| Covariance {
                 order: covariance_order(),
                 matrix: matrix.row_iter().map(|row| row.iter().copied().collect()).collect(),
@@ -202,15 +207,18 @@ fn triad(estimate: &TriadEstimate) -> TriadReport {
     }
 }
 
-fn gyroscope(estimate: &TriadEstimate) -> GyroscopeReport {
-    let TriadReport { bias_mps2, bias_sigma_mps2, correction, correction_sigma, observable } = triad(estimate);
+fn gyroscope(calibration: &Calibration) -> GyroscopeReport {
+    let TriadReport { bias_mps2, bias_sigma_mps2, correction, correction_sigma, observable } =
+        triad(&calibration.gyroscope);
+    let rows = |matrix: nalgebra::Matrix3<f32>| matrix.transpose().into();
     GyroscopeReport {
         bias_rad_s: bias_mps2,
         bias_sigma_rad_s: bias_sigma_mps2,
         correction,
         correction_sigma,
         observable,
-        g_sensitivity_rad_s_per_mps2: None,
+        g_sensitivity_rad_s_per_mps2: calibration.g_sensitivity.map(|felt| rows(felt.matrix)),
+        g_sensitivity_sigma_rad_s_per_mps2: calibration.g_sensitivity.map(|felt| rows(felt.sigma)),
     }
 }
 

@@ -72,6 +72,10 @@ fn write_report(to: &mut String, report: &Report) -> fmt::Result {
         correction(to, "accelerometer", &accel.correction, &accel.correction_sigma)?;
         bias(to, "gyroscope bias, °/s", &gyro.bias_rad_s, &gyro.bias_sigma_rad_s, 1.0 / DEGREE_RAD)?;
         correction(to, "gyroscope", &gyro.correction, &gyro.correction_sigma)?;
+        if let (Some(value), Some(sigma)) = (gyro.g_sensitivity_rad_s_per_mps2, gyro.g_sensitivity_sigma_rad_s_per_mps2)
+        {
+            sensitivity(to, &value, &sigma)?;
+        }
     }
     for carried in &report.with {
         writeln!(to, "carried besides: {}: {}", carried.id, carried.equation)?;
@@ -101,6 +105,17 @@ fn correction(to: &mut String, sensor: &str, value: &Matrix, sigma: &Matrix) -> 
         let name = format!("{sensor} correction {axis}");
         row(to, &name, value[i], 6)?;
         row(to, "  one sigma", sigma[i], 6)?;
+    }
+    Ok(())
+}
+
+/// Row by row, per g. Taken off the raw rate for the compensated force, beside the bias.
+fn sensitivity(to: &mut String, value: &[Vector; 3], sigma: &[Vector; 3]) -> fmt::Result {
+    let unit = STANDARD_GRAVITY_MPS2 / DEGREE_RAD;
+    writeln!(to, "the gyroscope feels force: ideal = correction * (raw - bias - this * accelerometer's ideal)")?;
+    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+        row(to, &format!("gyroscope {axis}, °/s per g"), value[i].map(|v| Some(v * unit)), 4)?;
+        row(to, "  one sigma", sigma[i].map(|v| Some(v * unit)), 4)?;
     }
     Ok(())
 }

@@ -23,6 +23,17 @@ pub const CORRECTION_SIGMA: f64 = 0.06;
 /// Prior of an accelerometer bias, the device's, m/s².
 pub const ACCEL_BIAS_SIGMA: f64 = 0.8;
 
+/// The segments of a tape with their samples, less what the device found the gyroscope to feel of force: neither reference fits that anew.
+fn unfelt(tape: &HostTape, readings: &[Reading], device: &Calibration) -> Vec<Stretch> {
+    let Some(felt) = device.g_sensitivity else { return data::stretches(tape.segments(), readings) };
+    let mut readings = readings.to_vec();
+    for Reading { sample, .. } in &mut readings {
+        let force = device.accelerometer.triad.compensate(&sample.specific_force_mps2);
+        sample.angular_rate_rad_s -= felt.matrix * force;
+    }
+    data::stretches(tape.segments(), &readings)
+}
+
 /// [`batch::estimate`] over the segments of a tape.
 pub fn batch(
     tape: &HostTape,
@@ -31,10 +42,10 @@ pub fn batch(
     start: &Estimate,
     noise: &[SegmentNoise],
 ) -> Option<(Calibration, Covariance)> {
-    let stretches = data::stretches(tape.segments(), readings);
+    let stretches = unfelt(tape, readings, &start.calibration);
     let batch = batch::estimate(&stretches, conditions, start, noise, batch::MeanNoise::Exact)?;
     let fit = fit(&stretches, &batch.accel, conditions, &start.calibration.fit, batch.chi_square_per_dof as f32);
-    let found = calibration(&batch.accel, &batch.gyro, conditions.frame(), fit, tape.temperature_degc());
+    let found = calibration([&batch.accel, &batch.gyro], conditions.frame(), fit, &start.calibration);
     Some((found, batch.covariance.cast()))
 }
 
@@ -45,10 +56,10 @@ pub fn gravity(
     conditions: &Conditions,
     start: &Estimate,
 ) -> Option<(Calibration, Covariance)> {
-    let stretches = data::stretches(tape.segments(), readings);
+    let stretches = unfelt(tape, readings, &start.calibration);
     let (accel, gyro) = gravity::estimate(&stretches, conditions, &start.noise)?;
     let fit = fit(&stretches, &accel, conditions, &start.calibration.fit, f32::NAN);
-    let found = calibration(&accel, &gyro, Frame::Accelerometer, fit, tape.temperature_degc());
+    let found = calibration([&accel, &gyro], Frame::Accelerometer, fit, &start.calibration);
     // The two fits follow each other: nothing is said of how their errors go together.
     let mut covariance = Covariance::zeros();
     covariance.fixed_view_mut::<12, 12>(0, 0).copy_from(&accel.covariance.cast());
@@ -56,8 +67,8 @@ pub fn gravity(
     Some((found, covariance))
 }
 
-fn calibration(accel: &Fitted, gyro: &Fitted, frame: Frame, fit: Fit, temperature_degc: f32) -> Calibration {
-    Calibration { accelerometer: triad(accel), gyroscope: triad(gyro), frame, temperature_degc, fit }
+fn calibration([accel, gyro]: [&Fitted; 2], frame: Frame, fit: Fit, device: &Calibration) -> Calibration {
+    Calibration { accelerometer: triad(accel), gyroscope: triad(gyro), frame, fit, ..*device }
 }
 
 /// Not observable where the device would say so: where the data leave more than a tenth of the prior.

@@ -52,6 +52,7 @@ impl<T: Real> Outcome<T> {
         state_sigmas(&mut gyroscope, variant, &gyro_covariance);
         let mut result = Self {
             calibration: Calibration {
+                g_sensitivity: None,
                 accelerometer: first.accelerometer(),
                 gyroscope,
                 frame: Frame::Box,

@@ -3,12 +3,12 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::estimate::closures::Closures;
-use crate::estimate::drift::Drift;
 use crate::estimate::facets::Facets;
 use crate::estimate::filter::Filter;
 use crate::estimate::group::Group;
 use crate::estimate::model::Nominal;
 use crate::estimate::noise::{FORCE_WALK_FLOOR, WALK_FLOOR};
+use crate::estimate::resting::{Account, Resting};
 use crate::estimate::state::Block;
 use crate::estimate::sums::Sums;
 use crate::estimate::turn_noise::TurnNoise;
@@ -21,16 +21,18 @@ use crate::face::Face;
 pub struct Pass {
     /// Over the pass.
     pub sums: Sums,
-    /// What stops, faces and rates at rest say of their variances and of the bias's drift.
+    /// What stops, faces and rates at rest say of their variances and of how the bias drifts.
     pub closures: Closures,
     /// See [`Self::closures`].
     pub facets: Facets,
     /// See [`Self::closures`].
-    pub drift: Drift,
+    pub resting: Resting,
     /// See [`Self::closures`].
     pub wobble: Wobble,
-    /// Does the gyroscope's bias wander …
-    pub rate_walk: Wander<3>,
+    /// What the last pass made of the rates at rest, without and with a sensitivity to force, …
+    pub accounts: [Option<Account>; 2],
+    /// … and whether the gyroscope's bias wanders under each, …
+    pub rate_walks: [Wander<3>; 2],
     /// … and the accelerometer's?
     pub force_walk: Wander<1>,
     /// Are there faces enough for the plate to be believed?
@@ -87,9 +89,10 @@ impl Pass {
             sums: Sums::default(),
             closures: Closures::default(),
             facets: Facets::default(),
-            drift: Drift::default(),
+            resting: Resting::default(),
             wobble: Wobble::default(),
-            rate_walk: Wander::new(WALK_FLOOR),
+            accounts: [Some(Account::default()), None],
+            rate_walks: [Wander::new(WALK_FLOOR); 2],
             force_walk: Wander::new(FORCE_WALK_FLOOR),
             plated: true,
             coarse: true,

@@ -40,12 +40,19 @@ impl<const S: usize> Walk<S> {
         let force = self.pass.nominal.accel.compensate(&force);
         self.level(&force, variance, noise);
         if solid {
-            self.compare(tape, segment, force.norm() - self.gravity, own, noise);
+            self.compare(tape, segment, &force, own, noise);
         }
     }
 
-    /// What a rest's means say of biases that drift and wander. `excess` is the mean specific force's over gravity, `own` its variance.
-    fn compare<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, excess: f32, own: f32, noise: &Noise) {
+    /// What a rest's means say of biases that drift and wander: its specific force, `own` the variance of a component.
+    fn compare<const R: usize>(
+        &mut self,
+        tape: &Tape<R, S>,
+        segment: &Segment,
+        force: &Vector3<f32>,
+        own: f32,
+        noise: &Noise,
+    ) {
         let (first, end, duration_s) = (usize::from(segment.first), usize::from(segment.end), segment.duration_s());
         let records = || (first..end).filter_map(|index| tape.record(index));
         let noisiest = records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max);
@@ -58,15 +65,21 @@ impl<const S: usize> Walk<S> {
         if time_s > 0.0 {
             let to_b = self.pass.attitude.to_rotation_matrix().into_inner().transpose();
             let left = sum / time_s - self.pass.nominal.gyro.bias;
-            self.pass.drift.take(&left, &to_b, t_s, time_s);
-            let left = left - noise.bias_slope * t_s - to_b * self.pass.nominal.earth_rad_s;
-            self.pass.rate_walk.take(&left.into(), noise.rate_density / time_s + noise.rate_rounding, t_s);
+            let variance = noise.rate_density / time_s + noise.rate_rounding;
+            let anew = self.pass.visit.is_none();
+            self.pass.resting.take((&left, variance), &to_b, t_s, &(force / self.gravity), anew);
+            let left = left - to_b * self.pass.nominal.earth_rad_s;
+            for (walk, account) in self.pass.rate_walks.iter_mut().zip(&self.pass.accounts) {
+                if let Some(account) = account {
+                    walk.take(&(left - account.rate(t_s, force)).into(), variance, t_s);
+                }
+            }
         }
         // On another face every number of the accelerometer is another.
         if self.pass.visit.is_none() {
             self.pass.force_walk.restart();
         }
-        self.pass.force_walk.take(&[excess], own, t_s);
+        self.pass.force_walk.take(&[force.norm() - self.gravity], own, t_s);
     }
 
     /// Does a record show the rest's own rate? A hand's last touch may be slower than what ends a rest.
