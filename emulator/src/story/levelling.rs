@@ -1,7 +1,6 @@
 //! What the board streamed of a tumbling, against what its sensor's registers held and where the box truly was.
 
-use nalgebra::Vector3;
-use tumble_core::calibration::Triad;
+use nalgebra::{Matrix3, Vector3};
 use tumble_core::frame::{CompensatedFrame, RawFrame};
 use tumble_core::sample::{Counts, Ranges, Sample};
 use tumble_sim::sensor::FrameTruth;
@@ -9,7 +8,7 @@ use tumble_sim::sensor::FrameTruth;
 use super::Failure;
 use super::acts::Tumbling;
 use super::inertial::{LevelError, Rates};
-use super::parameters::{Parameters, Sensor};
+use super::parameters::{Compensation, Parameters};
 use super::stage::Stage;
 
 /// Frames that must agree in a row to say which of the sensor's samples they are.
@@ -72,18 +71,13 @@ impl Alignment {
     /// The largest difference, in the frame's last digit, between compensated frames and the compensation of what the
     /// registers held; none where a frame is no sample of this time.
     #[must_use]
-    pub fn worst_digit(&self, tumbling: &Tumbling, accel: &Triad, gyro: &Triad) -> Option<i32> {
+    pub fn worst_digit(&self, tumbling: &Tumbling, compensation: &Compensation) -> Option<i32> {
         let mut worst = 0;
         for (_, frame) in &tumbling.frames.compensated {
             let (t_s, counts) = self.sample(frame.seq)?;
             ((t_s - self.time_s(frame.t_us)).abs() < 1e-3).then_some(())?;
             let raw = Ranges::WIDEST.to_si(frame.t_us, &counts);
-            let sample = Sample {
-                angular_rate_rad_s: gyro.compensate(&raw.angular_rate_rad_s),
-                specific_force_mps2: accel.compensate(&raw.specific_force_mps2),
-                ..raw
-            };
-            let expected = CompensatedFrame::new(frame.seq, &sample)?;
+            let expected = CompensatedFrame::new(frame.seq, &compensation.apply(&raw))?;
             let pairs = frame.angular_rate_urad_s.iter().zip(&expected.angular_rate_urad_s);
             let pairs = pairs.chain(frame.specific_force_um_s2.iter().zip(&expected.specific_force_um_s2));
             worst = pairs.map(|(said, computed)| (said - computed).abs()).fold(worst, i32::max);
@@ -91,14 +85,14 @@ impl Alignment {
         Some(worst)
     }
 
-    /// The rates of the raw frames.
+    /// The rates that somebody makes of the raw frames.
     #[must_use]
-    pub fn raw_rates(&self, stage: &Stage, tumbling: &Tumbling) -> Rates {
+    pub fn rates(&self, stage: &Stage, tumbling: &Tumbling, of: impl Fn(&Sample) -> Vector3<f64>) -> Rates {
         let delay_s = delay_s(stage);
         let frames = tumbling.frames.raw.iter().map(|(_, frame)| frame);
         let rates = frames.map(|frame| {
-            let si = Ranges::WIDEST.to_si(frame.t_us, &frame.counts).angular_rate_rad_s;
-            (self.time_s(frame.t_us) - delay_s, si.cast::<f64>())
+            let raw = Ranges::WIDEST.to_si(frame.t_us, &frame.counts);
+            (self.time_s(frame.t_us) - delay_s, of(&raw))
         });
         let (t_s, rad_s) = rates.unzip();
         Rates { t_s, rad_s }
@@ -149,24 +143,28 @@ pub struct Levels {
 pub fn of_raw(
     stage: &Stage,
     tumbling: &Tumbling,
-    rates: &Rates,
+    alignment: &Alignment,
     parameters: &Parameters,
     truth: &FrameTruth,
 ) -> Levels {
-    let bias = rates.mean(tumbling.rest_s);
-    let rates = rates.since(tumbling.rest_s.1 - BEFORE_S);
-    let level = |rates: &Rates| level_error(stage, rates);
-    let compensated = parameters.triad(Sensor::Gyroscope).map(|gyro| {
-        let (true_bias, correction) = (gyro.bias.cast::<f64>(), gyro.correction.cast::<f64>());
-        level(&rates.map(|rate| correction * (rate - true_bias)))
+    let raw = alignment.rates(stage, tumbling, |raw| raw.angular_rate_rad_s.cast());
+    let bias = raw.mean(tumbling.rest_s);
+    let level = |rates: &Rates| level_error(stage, &rates.since(tumbling.rest_s.1 - BEFORE_S));
+    let compensated = parameters.compensation().map(|compensation| {
+        level(&alignment.rates(stage, tumbling, |raw| compensation.apply(raw).angular_rate_rad_s.cast()))
     });
-    let true_bias = Vector3::from(truth.gyroscope.bias_rad_s);
-    let correction = nalgebra::Matrix3::from_fn(|i, j| truth.gyroscope.correction[i][j]);
+    let (accel, gyro) = (&truth.accelerometer, &truth.gyroscope);
+    let matrix = |rows: &[[f64; 3]; 3]| Matrix3::from_fn(|i, j| rows[i][j]);
+    let felt = matrix(&gyro.g_sensitivity_rad_s_per_mps2.unwrap_or_default());
+    let perfect = alignment.rates(stage, tumbling, |raw| {
+        let force = matrix(&accel.correction) * (raw.specific_force_mps2.cast() - Vector3::from(accel.bias_mps2));
+        matrix(&gyro.correction) * (raw.angular_rate_rad_s.cast() - Vector3::from(gyro.bias_rad_s) - felt * force)
+    });
     Levels {
-        raw: level(&rates),
-        raw_less_bias: level(&rates.map(|rate| rate - bias)),
+        raw: level(&raw),
+        raw_less_bias: level(&raw.map(|rate| rate - bias)),
         compensated: compensated.unwrap_or_default(),
-        perfect: level(&rates.map(|rate| correction * (rate - true_bias))),
+        perfect: level(&perfect),
     }
 }
 

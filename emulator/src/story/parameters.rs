@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use tumble_core::calibration::Triad;
+use tumble_core::sample::Sample;
 
 use super::line::Line;
 
@@ -27,6 +28,23 @@ impl Parameter {
             unit: line.value("unit").unwrap_or("").to_owned(),
             observable: line.value("observable") == Some("yes"),
         })
+    }
+}
+
+/// What a board computes with: `f = A (f_raw − a)`, `ω = M (ω_raw − b − G f)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compensation {
+    accel: Triad,
+    gyro: Triad,
+    felt: Matrix3<f32>,
+}
+
+impl Compensation {
+    #[must_use]
+    pub fn apply(&self, raw: &Sample) -> Sample {
+        let specific_force_mps2 = self.accel.compensate(&raw.specific_force_mps2);
+        let unfelt = raw.angular_rate_rad_s - self.felt * specific_force_mps2;
+        Sample { angular_rate_rad_s: self.gyro.compensate(&unfelt), specific_force_mps2, ..*raw }
     }
 }
 
@@ -77,5 +95,15 @@ impl Parameters {
             }
         }
         Some(triad)
+    }
+
+    /// All that the board computes with; none if a number is missing.
+    #[must_use]
+    pub fn compensation(&self) -> Option<Compensation> {
+        let felt = Matrix3::from_fn(|i, j| {
+            let felt = self.get(&format!("gyro_g_sensitivity_{}{}", AXES[i], AXES[j]));
+            felt.and_then(|parameter| parameter.value).unwrap_or(0.0)
+        });
+        Some(Compensation { accel: self.triad(Sensor::Accelerometer)?, gyro: self.triad(Sensor::Gyroscope)?, felt })
     }
 }

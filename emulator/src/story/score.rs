@@ -28,7 +28,7 @@ impl Row {
     }
 }
 
-/// All 24.
+/// Accelerometer's 12, gyroscope's 12, and 9 of its sensitivity to force where there is one or the board says one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Score(pub Vec<Row>);
 
@@ -64,6 +64,16 @@ impl Score {
                 for (column, truth) in AXES.iter().zip(truths) {
                     push(format!("{prefix}_correction_{row}{column}"), *truth);
                 }
+            }
+        }
+        let felt = truth.gyroscope.g_sensitivity_rad_s_per_mps2;
+        for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+            let name = format!("gyro_g_sensitivity_{}{}", AXES[i], AXES[j]);
+            let parameter = parameters.get(&name);
+            let estimate = parameter.and_then(|p| Some((f64::from(p.value?), f64::from(p.sigma?))));
+            if felt.is_some() || estimate.is_some() {
+                let truth = felt.map_or(0.0, |felt| felt[i][j]);
+                rows.push(Row { name, unit: "s/m".to_owned(), truth, estimate });
             }
         }
         Self(rows)

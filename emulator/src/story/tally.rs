@@ -36,7 +36,7 @@ pub fn judge_session(checks: &mut Checks, session: &Session, score: &Score) {
         checks.note("every error is within 5 sigma", false, "the board gave no parameters");
     } else {
         let beyond = score.beyond(SIGMAS);
-        let detail = if beyond.is_empty() { "all 24".to_owned() } else { beyond.join(", ") };
+        let detail = if beyond.is_empty() { format!("all {}", score.0.len()) } else { beyond.join(", ") };
         checks.note("every error is within 5 sigma", beyond.is_empty(), detail);
     }
     let errors = session.errors();

@@ -10,7 +10,7 @@ use super::acts::{self, Session};
 use super::checks::Checks;
 use super::inertial::LevelError;
 use super::levelling::{self, Alignment, Levels};
-use super::parameters::{Parameters, Sensor};
+use super::parameters::Parameters;
 use super::score::{Rms, Score};
 use super::stage::{Cast, Stage};
 use super::tally;
@@ -122,16 +122,11 @@ fn tumble(
 ) -> Result<(), Failure> {
     let raw = acts::tumble(stage, "raw", seconds)?;
     let alignment = Alignment::new(stage, &raw)?;
-    let rates = alignment.raw_rates(stage, &raw);
-    outcome.levels = levelling::of_raw(stage, &raw, &rates, parameters, truth);
+    outcome.levels = levelling::of_raw(stage, &raw, &alignment, parameters, truth);
     let cal = acts::tumble(stage, "cal", seconds)?;
     let later = alignment.later(stage);
     outcome.delivered = levelling::of_delivered(stage, &cal, &later.delivered_rates(stage, &cal));
-    let triads = (parameters.triad(Sensor::Accelerometer), parameters.triad(Sensor::Gyroscope));
-    let digit = match triads {
-        (Some(accel), Some(gyro)) => later.worst_digit(&cal, &accel, &gyro),
-        _ => None,
-    };
+    let digit = parameters.compensation().and_then(|compensation| later.worst_digit(&cal, &compensation));
     tally::judge_streams(&mut outcome.checks, &raw, &cal, &alignment, digit);
     tally::judge_levels(&mut outcome.checks, &outcome.levels, &outcome.delivered);
     Ok(())
