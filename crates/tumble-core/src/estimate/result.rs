@@ -58,7 +58,7 @@ impl<const S: usize> Estimator<S> {
         }
     }
 
-    /// The bias that is said of the session. With a sensitivity to force it is that of the rests' own account, for the filter's last one
+    /// The bias that is said of the session, with the wandering that rests cannot exclude in its sigma. With a sensitivity to force it is that of the rests' own account, for the filter's last one
     /// knows the last face best. One that wanders is its mean, because who subtracts it later wants to know: and the sigma that is said of it
     /// tells how far it went. What drifts straight is said at the session's middle.
     fn settle_bias<const R: usize>(
@@ -86,6 +86,9 @@ impl<const S: usize> Estimator<S> {
                 gyroscope.triad.bias = mean;
             }
             gyroscope.bias_sigma = gyroscope.bias_sigma.zip_map(&spread, libm::hypotf);
+        } else if let Some(walk) = self.walk.pass.rate_walks[usize::from(self.felt)].found() {
+            let wandered = libm::sqrtf(walk.density * self.walk.pass.session_s() / 6.0);
+            gyroscope.bias_sigma = gyroscope.bias_sigma.map(|sigma| libm::hypotf(sigma, wandered));
         }
     }
 

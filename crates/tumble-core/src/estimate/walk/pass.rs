@@ -82,6 +82,11 @@ pub(super) struct Visit {
 }
 
 impl Pass {
+    /// The session's length, s.
+    pub fn session_s(&self) -> f32 {
+        self.session_s
+    }
+
     /// Nothing walked yet. `width`: see [`widest`]; `turn_prior`: what the last pass's turns had in common.
     pub(super) fn new(nominal: Nominal, width: f32, turn_prior: Option<(f32, f32)>) -> Self {
         Self {
