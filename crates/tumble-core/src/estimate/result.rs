@@ -8,6 +8,7 @@ use super::prior::CORRECTION_SIGMA;
 use super::start;
 use super::state::Block;
 use super::walk::still::EARTH_SIGMA;
+use super::wander::Found;
 use crate::calibration::{Calibration, Fit, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
 use crate::tape::Tape;
@@ -34,9 +35,13 @@ impl<const S: usize> Estimator<S> {
         };
         let mut gyroscope = triad(&nominal.gyro, GYRO_BIAS);
         self.settle_bias(tape, nominal, &mut gyroscope, &mut covariance);
+        let mut accelerometer = triad(&nominal.accel, 0);
+        // Twelve comparisons leave more possible than such a sensor does (0.4 mg a session), so that it takes a likely walk.
+        let walk = self.walk.pass.force_walk.found().filter(Found::probable);
+        widen(&mut accelerometer, walk, self.walk.pass.session_s());
         Estimate {
             calibration: Calibration {
-                accelerometer: triad(&nominal.accel, 0),
+                accelerometer,
                 gyroscope,
                 g_sensitivity: self.account().filter(|_| self.felt).map(|account| account.sensitivity),
                 frame: self.conditions.frame(),
@@ -58,9 +63,9 @@ impl<const S: usize> Estimator<S> {
         }
     }
 
-    /// The bias that is said of the session, with the wandering that rests cannot exclude in its sigma. With a sensitivity to force it is that of the rests' own account, for the filter's last one
+    /// The bias that is said of the session. With a sensitivity to force it is that of the rests' own account, for the filter's last one
     /// knows the last face best. One that wanders is its mean, because who subtracts it later wants to know: and the sigma that is said of it
-    /// tells how far it went. What drifts straight is said at the session's middle.
+    /// tells how far it went. What drifts straight is said at the session's middle. Else its sigma has the wandering that rests leave possible.
     fn settle_bias<const R: usize>(
         &self,
         tape: &Tape<R, S>,
@@ -86,9 +91,9 @@ impl<const S: usize> Estimator<S> {
                 gyroscope.triad.bias = mean;
             }
             gyroscope.bias_sigma = gyroscope.bias_sigma.zip_map(&spread, libm::hypotf);
-        } else if let Some(walk) = self.walk.pass.rate_walks[usize::from(self.felt)].found() {
-            let wandered = libm::sqrtf(walk.density * self.walk.pass.session_s() / 6.0);
-            gyroscope.bias_sigma = gyroscope.bias_sigma.map(|sigma| libm::hypotf(sigma, wandered));
+        } else {
+            let walk = self.walk.pass.rate_walks[usize::from(self.felt)].found();
+            widen(gyroscope, walk, self.walk.pass.session_s());
         }
     }
 
@@ -121,4 +126,12 @@ impl<const S: usize> Estimator<S> {
             turn_closure_rms_rad: libm::sqrtf(sums.closed.0 / sums.closed.1.max(1.0)),
         }
     }
+}
+
+/// A bias's sigma with what a walk leaves possible: about its own mean over a session it has a mean square of q T/6, and where it is
+/// certain, so that the filter follows it and says the last, that is q T/3 from the mean.
+fn widen(triad: &mut TriadEstimate, walk: Option<Found>, session_s: f32) {
+    let Some(walk) = walk else { return };
+    let wandered = libm::sqrtf(walk.density * session_s / if walk.certain() { 3.0 } else { 6.0 });
+    triad.bias_sigma = triad.bias_sigma.map(|sigma| libm::hypotf(sigma, wandered));
 }

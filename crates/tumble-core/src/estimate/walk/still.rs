@@ -38,7 +38,7 @@ impl<const S: usize> Walk<S> {
         let own = noise.force_density * scale / duration_s + noise.force_rounding;
         let variance = own / (self.gravity * self.gravity);
         let force = self.pass.nominal.accel.compensate(&force);
-        self.level(&force, variance, noise);
+        self.level(&force, variance, duration_s, noise);
         if solid {
             self.compare(tape, segment, &force, own, noise);
         }
@@ -107,7 +107,10 @@ impl<const S: usize> Walk<S> {
 
     /// Turns the nominal attitude so that it agrees with gravity: the shift is known, so nothing is fed back into the
     /// linearisation but the still's own noise (0.1 mrad, whose square is nothing).
-    fn level(&mut self, force: &Vector3<f32>, variance: f32, noise: &Noise) {
+    ///
+    /// What is expected of the move before has what biases that walk make of it: the nominal attitude is carried with the nominal bias, about
+    /// which a walk has a mean square of q T/6, and the accelerometer's is another at each rest.
+    fn level(&mut self, force: &Vector3<f32>, variance: f32, duration_s: f32, noise: &Noise) {
         let turn = model::levelling(&(self.pass.attitude * force));
         self.pass.attitude = UnitQuaternion::new_normalize((turn * self.pass.attitude).into_inner());
         let before = core::mem::replace(&mut self.pass.level_variance, variance);
@@ -118,7 +121,10 @@ impl<const S: usize> Walk<S> {
         let turn = turn.scaled_axis();
         self.filter.shift(Block::Attitude, &-turn);
         if let Some(hinge) = self.pass.hinge.take() {
-            let expected = before + variance + noise.rate_density * noise.motion_scale * self.pass.move_s;
+            let move_s = self.pass.move_s;
+            let walked = noise.total_bias_walk() * self.pass.session_s / 6.0 * move_s * move_s
+                + noise.force_walk * (move_s + duration_s) / (self.gravity * self.gravity);
+            let expected = before + variance + noise.rate_density * noise.motion_scale * move_s + walked;
             self.noise[hinge].hinge_nis = turn.norm_squared() / expected;
         }
     }
