@@ -84,8 +84,8 @@ impl Session<'_> {
         let boxless = self.conditions.frame() != conditions.frame() && !matches!(method, Method::Gravity);
         if boxless && outcome.verdict != Verdict::Rejected {
             outcome.warn(
-                "The box was called square, but fewer than three of its faces lay on the table: the numbers are given in the \
-                 accelerometer's own axes. For the box's axes lay it on at least three faces."
+                "The box was called square, but fewer than three of its faces could be compared on the table: the numbers are given in the \
+                 accelerometer's own axes. For the box's axes lay it on three faces or more without a break."
                     .into(),
             );
         }
@@ -106,7 +106,7 @@ impl Session<'_> {
         let mut outcome = Outcome {
             calibration: estimate.ok().map(|estimate| estimate.calibration),
             verdict: judgement.verdict,
-            reasons: judgement.reasons.iter().map(ToString::to_string).collect(),
+            reasons: judgement.reasons.iter().map(in_words).collect(),
             covariance: None,
             segments: tape.segments().iter().map(|segment| report(segment, self.origin_s)).collect(),
         };
@@ -116,11 +116,20 @@ impl Session<'_> {
 }
 
 impl Outcome {
-    fn warn(&mut self, reason: String) {
+    /// Adds what a person should know.
+    pub fn warn(&mut self, reason: String) {
         self.reasons.push(reason);
         if self.verdict == Verdict::Accepted {
             self.verdict = Verdict::AcceptedWithWarnings;
         }
+    }
+}
+
+/// As the board says it; a recording can be asked further.
+fn in_words(reason: &Reason) -> String {
+    match reason {
+        Reason::PoorFit { .. } => format!("{reason} `tumble diagnose` tells what it is that does not fit."),
+        _ => reason.to_string(),
     }
 }
 

@@ -9,6 +9,7 @@ pub mod cli;
 pub mod conceal;
 pub mod diagnose;
 pub mod export;
+pub mod faults;
 pub mod inject;
 pub mod output;
 pub mod recording;

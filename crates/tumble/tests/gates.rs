@@ -34,7 +34,7 @@ fn gates(recording: &Recording) -> Gated {
     };
     let tape = session.settle_at(1.0, &mut |_| {}).tape;
     let samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments() })
+    examine(&Scene { recording, inference: &inference, samples: &samples, segments: tape.segments(), without: &[] })
 }
 
 /// A configuration of any kind that is clean: schemes, wobble up to 1°, by hand or fenced, 50 to 200 Hz, quantised or not,

@@ -49,6 +49,15 @@ impl Bench {
         let _ = self.reasons.insert(0, reason);
     }
 
+    /// What a person did or the sensor suffered stands before what follows from it number by number.
+    fn causes_first(&mut self) {
+        let follows = |reason: &Reason| matches!(reason, Reason::NotObservable { .. } | Reason::Uncertain { .. });
+        let causes: Vec<Reason, 8> = self.reasons.iter().filter(|reason| !follows(reason)).copied().collect();
+        self.reasons.retain(follows);
+        let consequences = core::mem::replace(&mut self.reasons, causes);
+        let _ = self.reasons.extend_from_slice(&consequences);
+    }
+
     fn warn(&mut self, reason: Reason) {
         if self.verdict == Verdict::Accepted {
             self.verdict = Verdict::AcceptedWithWarnings;
@@ -72,6 +81,7 @@ pub fn judge<const R: usize, const S: usize>(
     }
     reject_the_impossible(calibration, &mut bench);
     reject_the_undetermined(calibration, tape, &mut bench);
+    bench.causes_first();
     let accepted = (bench.verdict != Verdict::Rejected).then(|| AcceptedCalibration::new(*calibration));
     (Judgement { verdict: bench.verdict, reasons: bench.reasons }, accepted)
 }
@@ -86,8 +96,10 @@ fn warn_of_the_session<const R: usize, const S: usize>(
         bench.warn(Reason::SamplesLost { samples: lost });
     }
     let motion = estimate.noise.motion_scale;
-    if motion > MOTION_LIMIT || !estimate.converged {
+    if motion > MOTION_LIMIT {
         bench.warn(Reason::PoorFit { nis_per_dof: motion });
+    } else if !estimate.converged && estimate.moved <= MOVED_LIMIT {
+        bench.warn(Reason::Unsettled { sigmas: estimate.moved });
     }
     if let Some(facet_rad) = estimate.noise.crookedness_rad() {
         bench.warn(Reason::CrookedBox { facet_rad });

@@ -159,10 +159,10 @@ impl Noise {
         self.force_walk = found.clamp(FORCE_WALK_FLOOR, FORCE_WALK_CAP);
     }
 
-    /// How crooked the box was found to be, rad, if it was called square and is certainly not. A sensor ten times as quiet as the
-    /// sheet's sees some 40 µrad, which no person can mend and no two digits can say: 0.005° is the least that is told.
+    /// How crooked the box was found to be, rad, if it was called square and is certainly not. Sigmas have it whatever it is; a person is told
+    /// from 0.02° on (17 µm over 5 cm), for what is less nobody can mend.
     pub fn crookedness_rad(&self) -> Option<f32> {
-        const LEAST_RAD: f32 = 87e-6;
+        const LEAST_RAD: f32 = 350e-6;
         self.facet_sigma_rad.filter(|sigma| self.crooked && *sigma > LEAST_RAD)
     }
 

@@ -11,6 +11,7 @@ use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
 use crate::calibrate::{self, Method, Session};
 use crate::diagnose::carry;
+use crate::faults::{self, Mended};
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
 
@@ -99,15 +100,22 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         let conditions = conditions(arguments, recording);
         (readings, carried) = carry::carry(recording, conditions, &arguments.with).map_err(Refusal::one)?;
     }
+    // What an emulated board is given is not mended, nor what an effect was taken out of.
+    let replayed = arguments.board_counts || !arguments.with.is_empty();
+    let Mended { readings, lost, remarks } = match replayed {
+        true => Mended { readings, lost: inference.missing(), remarks: Vec::new() },
+        false => faults::mend(recording, &inference, readings),
+    };
     let session = Session {
         readings: &readings,
         origin_s: recording.origin_s(),
-        lost: inference.missing(),
+        lost,
         conditions: conditions(arguments, recording),
     };
     let mut progress = Progress::new();
-    let outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
+    let mut outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
     drop(progress);
+    remarks.into_iter().for_each(|remark| outcome.warn(remark));
     let report = Report::of(&outcome).carrying(carried);
     if arguments.json {
         print_json(&report)?;

@@ -25,13 +25,13 @@ pub struct Intake {
 }
 
 /// Takes a recording in.
-pub fn intake(recording: &Recording, conditions: Option<Conditions>) -> Intake {
-    take(recording, conditions, false)
+pub fn intake(recording: &Recording, options: &Options) -> Intake {
+    take(recording, options, false)
 }
 
 /// The same, but rotation while the box is moved from face to face is taken for lost.
-pub fn intake_without_moves(recording: &Recording, conditions: Option<Conditions>) -> Intake {
-    take(recording, conditions, true)
+pub fn intake_without_moves(recording: &Recording, options: &Options) -> Intake {
+    take(recording, options, true)
 }
 
 /// A recording's twin, with the columns of all that may be searched for.
@@ -39,21 +39,27 @@ pub fn intake_without_moves(recording: &Recording, conditions: Option<Conditions
 /// # Errors
 /// Why there is none, in words.
 pub fn bench(recording: &Recording, options: &Options) -> Result<Bench, String> {
-    let prepared = intake(recording, options.conditions).prepared?;
+    let prepared = intake(recording, options).prepared?;
     Ok(Bench::new(prepared.twin, &options.without))
 }
 
-fn take(recording: &Recording, conditions: Option<Conditions>, without_moves: bool) -> Intake {
+fn take(recording: &Recording, options: &Options, without_moves: bool) -> Intake {
     let inference = Inference::of(recording);
     let origin_s = recording.origin_s();
-    let conditions = conditions.unwrap_or_else(|| settle::conditions(&recording.metadata));
+    let conditions = options.conditions.unwrap_or_else(|| settle::conditions(&recording.metadata));
     let mut readings = recording.samples(&inference);
     let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
     let lost = inference.missing();
     let session = Session { readings: &readings, origin_s, lost, conditions };
     let mut settled = session.settle(&mut |_| {});
     let segments = settled.tape.segments();
-    let gated = gates::examine(&Scene { recording, inference: &inference, samples: &samples, segments });
+    let gated = gates::examine(&Scene {
+        recording,
+        inference: &inference,
+        samples: &samples,
+        segments,
+        without: &options.without,
+    });
     if let Some(stop) = &gated.stop {
         let prepared = Err(stop.clone());
         return Intake { gated, conditions, prepared, remarks: Vec::new() };
@@ -96,7 +102,7 @@ fn masked(gated: &Gated) -> Vec<usize> {
 }
 
 /// Puts neighbours' means for samples that are no measurements, and axes and scales right.
-fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
+pub fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
     for &index in &gated.repaired {
         if index == 0 || index + 1 >= samples.len() {
             continue;

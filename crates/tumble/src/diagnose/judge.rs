@@ -20,6 +20,9 @@ pub const BESIDE_GATES: f64 = 20.0;
 /// Beside something unknown a name stands if shapes without a name explain less than half of what it explains.
 const BEYOND_UNKNOWN: f64 = 0.5;
 
+/// A step or a warm-up none of whose sizes is as large as so many of its sigmas is none: what is certain is that something changed.
+const SIZED: f64 = 2.0;
+
 /// What of the accepted keeps its name.
 pub struct Judged {
     /// What stands.
@@ -107,6 +110,11 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             dropped.push((k, finding));
             continue;
         }
+        if is_sizeless(bench, k, &finding) {
+            judged.nameless((-finding.found.evidence).exp(), Vec::new());
+            judged.demoted.push(finding);
+            continue;
+        }
         let shapes = shapes_instead(bench, selection, &[k]);
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let weak = finding.is_walk || shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
@@ -133,6 +141,16 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
         judged.demote(|finding| finding.is_walk);
     }
     judged
+}
+
+/// Is it a form of its own time, all of whose sizes are lost in their sigmas? It then stands in the place of a sum of others (the end of a
+/// first rest, what is accepted besides), which the evidence belongs to.
+fn is_sizeless(bench: &Bench, k: usize, finding: &Finding) -> bool {
+    let accepted = &bench.accepted[k];
+    let variant = bench.candidate(accepted).variants.get(accepted.variant);
+    let Some(variant) = variant.filter(|variant| variant.setting.is_some()) else { return false };
+    let sizes = finding.found.parameters.iter().take(variant.parameters.len());
+    sizes.into_iter().all(|size| size.value.abs() < SIZED * size.sigma)
 }
 
 /// What does not hold on data left out, or no longer pays, is chance or has the wrong form: the latter if shapes without a name are more

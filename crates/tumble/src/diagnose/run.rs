@@ -23,9 +23,9 @@ pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;
 /// Diagnoses a recording.
 pub fn diagnose(recording: &Recording, options: &Options, progress: &mut Progress) -> Outcome {
     progress("reading", 0.0);
-    let mut outcome = look(recording, intake(recording, options.conditions), options, progress);
+    let mut outcome = look(recording, intake(recording, options), options, progress);
     if second::is_due(recording, &outcome.diagnosis) {
-        let again = look(recording, intake_without_moves(recording, options.conditions), options, progress);
+        let again = look(recording, intake_without_moves(recording, options), options, progress);
         outcome = second::settle(recording, outcome, again);
     }
     let notices = recording.notices.iter().map(|notice| format!("Of the file: {notice}."));

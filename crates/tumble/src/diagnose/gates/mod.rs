@@ -49,6 +49,8 @@ pub struct Scene<'a> {
     pub samples: &'a [Raw],
     /// As the board's segmenter found them.
     pub segments: &'a [Segment],
+    /// Effects that nobody is to know of: what is found of them is neither told nor mended.
+    pub without: &'a [String],
 }
 
 /// What they found.
@@ -58,6 +60,8 @@ pub struct Gated {
     pub found: Vec<Found>,
     /// Samples to be corrected or masked: index and what to put there (None: linear from its neighbours).
     pub repaired: Vec<usize>,
+    /// Samples that stand at a level, with their channels (bits as in `Reading::clipped`).
+    pub clipped: Vec<(usize, u8)>,
     /// Reason why nothing further can be said, if so.
     pub stop: Option<String>,
     /// A constant matrix that raw rates (first) and forces (second) must be multiplied by before anything fits: axis
@@ -67,6 +71,7 @@ pub struct Gated {
     pub imitated: Vec<String>,
     /// Detection limits.
     pub limits: Vec<Limit>,
+    without: Vec<String>,
 }
 
 /// What each gate can name.
@@ -92,7 +97,7 @@ pub const CARDS: [&Card; 17] = [
 
 /// All gates.
 pub fn examine(scene: &Scene) -> Gated {
-    let mut gated = Gated::default();
+    let mut gated = Gated { without: scene.without.to_vec(), ..Gated::default() };
     if let Some(reason) = unfit(scene) {
         gated.stop = Some(reason);
         return gated;
@@ -170,9 +175,10 @@ impl Gated {
         // Rates that a driver sets to zero have no scatter, as coarse ones have none.
         self.take(coarse.unless(hole.found.is_some()));
         self.take(hole);
+        let hidden = self.hides(&mapped.axes) || self.hides(&mapped.scale);
         self.take(mapped.axes);
         self.take(mapped.scale);
-        self.remap = mapped.remap;
+        self.remap = mapped.remap.filter(|_| !hidden);
     }
 
     /// What swings at rest.
@@ -207,10 +213,18 @@ impl Gated {
         }
     }
 
+    fn hides(&self, outcome: &Outcome) -> bool {
+        outcome.found.iter().any(|found| self.without.contains(&found.id))
+    }
+
     fn take(&mut self, outcome: Outcome) {
+        if self.hides(&outcome) {
+            return;
+        }
         self.imitated.extend(outcome.found.iter().flat_map(|_| outcome.imitated).map(|id| (*id).into()));
         self.found.extend(outcome.found);
         self.limits.extend(outcome.limit);
         self.repaired.extend(outcome.repaired);
+        self.clipped.extend(outcome.clipped);
     }
 }

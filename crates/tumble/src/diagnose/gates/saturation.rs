@@ -109,6 +109,8 @@ fn triad(
     });
     outcome.found = Some(found(card, evidence, parameters, place));
     outcome.imitated = imitated;
+    outcome.clipped =
+        flats.iter().flat_map(|flat| flat.samples.iter().map(|index| (*index, 1 << flat.channel))).collect();
     outcome
 }
 

@@ -12,7 +12,7 @@
 
 use super::chance::{SURE, median, quantile};
 use super::tell::{Outcome, found, limit, value};
-use super::view::View;
+use super::view::{self, View};
 use crate::diagnose::catalogue::Card;
 
 /// What bad stamps are taken for: rates' products with wrong intervals.
@@ -22,8 +22,11 @@ const LEAST_SHARE: f64 = 0.02;
 /// A step that nearly divides the interval shows by its beats: now and then a spacing is one step longer. From ten on they are
 /// no accident: in 200 s a step of 1 ms shows where sensor and clock differ by more than 50 ppm. A step that divides the
 /// interval to better than that leaves stamps as even as a clock without steps. (A step above half the interval keeps one in a
-/// hundred, for spacings of two intervals are lost samples.)
+/// hundred, for spacings of two intervals are lost samples, unless they come as evenly as beats do.)
 const LEAST_BEATS: f64 = 10.0;
+/// Scatter of the times from beat to beat over their mean. Of samples lost at random it is 1, and of nine such times below a quarter in
+/// fewer than one case of a million.
+const EVEN: f64 = 0.25;
 /// Least step as a share of the interval, and in s: text has 1e-4 s, and a tick of 1/4096 s is 2.4e-4.
 const LEAST_STEP: f64 = 0.03;
 const LEAST_STEP_S: f64 = 1.5e-4;
@@ -112,11 +115,19 @@ fn clock_step(view: &View, dt: &[f64]) -> Option<(f64, f64)> {
         let low = (mean_s / step).floor();
         let share = |wanted: f64| dt.iter().filter(|dt| multiple(dt) == wanted).count() as f64 / dt.len() as f64;
         let (below, above) = (share(low), share(low + 1.0));
-        let rare = if low < 2.0 { 0.01 * dt.len() as f64 } else { LEAST_BEATS };
+        let rare = if low < 2.0 && !beats_evenly(dt, step, low + 1.0) { 0.01 * dt.len() as f64 } else { LEAST_BEATS };
         let alternates = below + above > 0.9 && below.min(above) * dt.len() as f64 > rare;
         let bounded = excursion(&view.t_s) < 3.0 * step;
         (on > 0.98 && alternates && bounded).then(|| (step, dt.len() as f64 * below.min(above)))
     })
+}
+
+/// Do the spacings of so many steps come at even times?
+fn beats_evenly(dt: &[f64], step: f64, long: f64) -> bool {
+    let at: Vec<f64> = (0..dt.len()).filter(|i| (dt[*i] / step).round() == long).map(|i| i as f64).collect();
+    let apart: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+    at.len() as f64 >= LEAST_BEATS && view::scatter(&apart) < EVEN * mean
 }
 
 /// Spacings (to 10 µs) that at least [`LEAST_BEATS`] have, the commonest eight.

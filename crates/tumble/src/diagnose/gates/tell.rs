@@ -12,6 +12,8 @@ pub struct Outcome {
     pub limit: Option<Limit>,
     /// Samples to be replaced.
     pub repaired: Vec<usize>,
+    /// Samples that stand at a level, with their channels (bits as in `Reading::clipped`).
+    pub clipped: Vec<(usize, u8)>,
     /// Structural effects that this one looks like.
     pub imitated: &'static [&'static str],
 }
