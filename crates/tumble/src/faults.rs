@@ -5,7 +5,7 @@
 //! were off by 45 sigma, repeated samples cost 12, jitter of 2 ms 10.
 
 use crate::diagnose::diagnosis::Found;
-use crate::diagnose::gates::{self, Gated, Scene};
+use crate::diagnose::gates::{self, Scene};
 use crate::diagnose::intake::repair;
 use crate::diagnose::twin::data::Raw;
 use crate::recording::{Inference, Reading, Recording};
@@ -31,11 +31,11 @@ pub fn mend(recording: &Recording, inference: &Inference, mut readings: Vec<Read
     settle::record(&readings, 1.0, &mut tape);
     let origin_s = recording.origin_s();
     let mut samples: Vec<Raw> = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    let gated =
+    let mut gated =
         gates::examine(&Scene { recording, inference, samples: &samples, segments: tape.segments(), without: &[] });
     let mut lost = inference.missing();
     // Axes and ranges stay as they are recorded: which of the two triads is wrong is for a person to say.
-    let gated = Gated { remap: None, ..gated };
+    gated.remap = None;
     if !gated.repaired.is_empty() {
         repair(&mut samples, &mut readings, &gated);
     }
