@@ -45,7 +45,7 @@ pub fn mend(recording: &Recording, inference: &Inference, mut readings: Vec<Read
     let mut remarks = Vec::new();
     for found in &gated.found {
         let done = match found.id.as_str() {
-            "gyro_saturation" | "accel_saturation" => "what moved meanwhile is left out",
+            "gyro_saturation" | "accel_saturation" | "frozen_reading" => "what moved meanwhile is left out",
             "duplicated_samples" | "byte_tearing" => "the means of their neighbours were put in their places",
             "timestamp_jitter" | "timestamp_quantization" if restamp(&mut readings, found) => {
                 lost = 0;

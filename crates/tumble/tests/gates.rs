@@ -98,7 +98,7 @@ fn words(gated: &Gated) -> String {
 }
 
 /// Effects with sizes that must be seen, on the scheme with turns both ways.
-const PLAIN: [&str; 20] = [
+const PLAIN: [&str; 21] = [
     "timestamp_jitter=0.3",
     "timestamp_quantization=3",
     "dropped_samples=0.5",
@@ -119,6 +119,7 @@ const PLAIN: [&str; 20] = [
     "undersampling=20",
     "spin_axis_wobble=5",
     "duplicated_samples=6",
+    "frozen_reading=0.3",
 ];
 
 #[test]

@@ -15,7 +15,7 @@ use super::start;
 use super::state::Block;
 use super::sums::SegmentNoise;
 use super::walk::Walk;
-use super::walk::still::EARTH_SIGMA;
+use super::walk::still::{EARTH_SIGMA, MEDIAN};
 use super::wander::Found;
 use crate::calibration::{Calibration, Frame};
 use crate::order::median;
@@ -305,12 +305,15 @@ impl<const S: usize> Estimator<S> {
             return true;
         }
         let Some(middle) = median(&mut hinges) else { return true };
+        let mut scatter: heapless::Vec<f32, S> =
+            self.walk.noise.iter().map(|noise| noise.hinge_scatter).filter(|scatter| scatter.is_finite()).collect();
+        self.noise.moves_scatter = median(&mut scatter).map_or(1.0, |scatter| scatter.max(1.0));
         // The share of χ²₂ below the median of n is ½ in the mean, with a variance of 1/(4 (n + 2)). (The median itself is far from
         // normal: a limit on it that should be passed once in a hundred sessions was passed in three.)
         let below = 1.0 - libm::expf(-0.5 * middle);
         let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges.len() as f32 + 2.0);
         let excess = match self.noise.motion_scale > 1.0 || certain {
-            true => (middle / 1.386).max(1.0 / self.noise.motion_scale),
+            true => (middle / MEDIAN).max(1.0 / self.noise.motion_scale),
             false => 1.0,
         };
         self.noise.motion_scale *= excess;

@@ -59,6 +59,8 @@ pub struct Noise {
     pub force_walk: f32,
     /// Factor on `rate_density` while it moves.
     pub motion_scale: f32,
+    /// By what factor of `rate_density` moves from rest to rest scatter if no bias walked: what nobody but a walk accounts for.
+    pub moves_scatter: f32,
     /// One stop of a turn, rad.
     pub stop_sigma_rad: f32,
     /// How far a turn's axis is from where it is in other turns, m.
@@ -111,6 +113,7 @@ impl Noise {
             account_walk: 0.0,
             force_walk: FORCE_WALK_FLOOR,
             motion_scale: 1.0,
+            moves_scatter: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
             contact_sigma_rad: CONTACT,

@@ -13,6 +13,8 @@ pub struct SegmentNoise {
     /// Level error after this move about the nominal, normalised without `rate_scale`: χ² with 2 degrees of freedom if the
     /// move fits. NaN if there was no rest on both sides.
     pub hinge_nis: f32,
+    /// By what factor of the gyroscope's noise half of such moves would end as far off, if no bias walked.
+    pub hinge_scatter: f32,
 }
 
 /// Sums over a pass.

@@ -98,7 +98,12 @@ impl<const S: usize> Walk<S> {
         let scale = if matches!(segment.kind, Kind::OnTable { .. }) { TURN_FORCE_SCALE } else { 1.0 };
         while self.noise.len() <= self.pass.segment {
             // As many as the tape has segments: there is room.
-            let _ = self.noise.push(SegmentNoise { force_scale: scale, rate_scale: 1.0, hinge_nis: f32::NAN });
+            let _ = self.noise.push(SegmentNoise {
+                force_scale: scale,
+                rate_scale: 1.0,
+                hinge_nis: f32::NAN,
+                hinge_scatter: f32::NAN,
+            });
         }
         let (start_us, end_us) =
             tape.segments().last().map_or((0, 0), |last| (tape.segments()[0].start_us, last.end_us));

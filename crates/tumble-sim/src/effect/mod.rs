@@ -32,6 +32,7 @@ mod duplicated_samples;
 mod earth_rotation;
 mod error;
 mod foreign;
+mod frozen_reading;
 mod gyro_accel_lag;
 mod gyro_bias_random_walk;
 mod gyro_bias_step;

@@ -94,9 +94,9 @@ fn remarks(settled: &Settled, lost: u32) -> Vec<String> {
     remarks
 }
 
-/// Segments whose readings are bounds or knocks: their rotation and force are lost.
+/// Segments whose readings are bounds, knocks or old: their rotation and force are lost.
 fn masked(gated: &Gated) -> Vec<usize> {
-    const LOST: [&str; 3] = ["gyro_saturation", "accel_saturation", "shock"];
+    const LOST: [&str; 4] = ["gyro_saturation", "accel_saturation", "shock", "frozen_reading"];
     let lost = gated.found.iter().filter(|found| LOST.contains(&found.id.as_str()));
     lost.flat_map(|found| found.place.segments.iter().copied()).collect()
 }

@@ -22,6 +22,8 @@ pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 const LEVEL_SIGMA: f32 = 0.1;
 /// A record at rest whose rate is further than this from the rest's own is no rest: noise does that once in 5000 sessions of 300 numbers.
 const UNSTEADY_SIGMAS: f32 = 5.0;
+/// Of χ²₂.
+pub(in crate::estimate) const MEDIAN: f32 = 1.386;
 /// The level's prior in sigmas of the rest's own noise: as wide as `prior::narrow` makes the others.
 const LEVEL_WIDTH: f32 = 30.0;
 
@@ -124,8 +126,10 @@ impl<const S: usize> Walk<S> {
             let move_s = self.pass.move_s;
             let walked = noise.total_bias_walk() * self.pass.session_s / 6.0 * move_s * move_s
                 + noise.force_walk * (move_s + duration_s) / (self.gravity * self.gravity);
-            let expected = before + variance + noise.rate_density * noise.motion_scale * move_s + walked;
-            self.noise[hinge].hinge_nis = turn.norm_squared() / expected;
+            let (level, moved) = (before + variance, noise.rate_density * move_s);
+            let noise_of_it = &mut self.noise[hinge];
+            noise_of_it.hinge_nis = turn.norm_squared() / (level + moved * noise.motion_scale + walked);
+            noise_of_it.hinge_scatter = (turn.norm_squared() / MEDIAN - level) / moved;
         }
     }
 

@@ -1,7 +1,7 @@
 //! Tail probabilities as natural logarithms: gates look far out, where probabilities themselves underflow.
 
-/// ln of the share of false alarms that one gate may give on a clean recording: 1e-5 by its own arithmetic. Seventeen
-/// gates then give 1.7e-4; that leaves a factor of ten of the 0.2 % allowed to assumptions that hold only nearly.
+/// ln of the share of false alarms that one gate may give on a clean recording: 1e-5 by its own arithmetic. Eighteen
+/// gates then give 1.8e-4; that leaves a factor of ten of the 0.2 % allowed to assumptions that hold only nearly.
 pub const LN_ALARM: f64 = -11.5;
 
 /// ln P(X ≥ `count`) of a Poisson variable, by Chernoff's bound: never too small. Zero where `count` is no surprise.

@@ -7,6 +7,7 @@ mod aliasing;
 pub(super) mod chance;
 mod closure;
 mod coarse;
+mod frozen;
 mod gaps;
 mod hole;
 mod line;
@@ -75,10 +76,11 @@ pub struct Gated {
 }
 
 /// What each gate can name.
-pub const CARDS: [&Card; 17] = [
+pub const CARDS: [&Card; 18] = [
     &aliasing::CARD,
     &closure::CARD,
     &coarse::CARD,
+    &frozen::CARD,
     &gaps::CARD,
     &hole::CARD,
     &line::CARD,
@@ -161,6 +163,7 @@ impl Gated {
     fn look_at_values(&mut self, view: &View) {
         let stale = stale::examine(view);
         let (gyro, accel) = saturation::examine(view, &stale.repaired);
+        let frozen = frozen::examine(view, &stale.repaired);
         self.take(stale);
         let mapped = mapping::examine(view, gyro.found.is_some(), accel.found.is_some());
         // Counts of a range too wide look coarse; the range says so already.
@@ -172,6 +175,8 @@ impl Gated {
         }
         self.take(accel);
         let hole = hole::examine(view);
+        // Coarse counts and rates set to zero stand still of themselves.
+        self.take(frozen.unless(coarse.found.is_some() || hole.found.is_some()));
         // Rates that a driver sets to zero have no scatter, as coarse ones have none.
         self.take(coarse.unless(hole.found.is_some()));
         self.take(hole);
@@ -206,6 +211,8 @@ impl Gated {
             // Products of rates and wrong intervals tilt the axis of a turn: steps of 10 ms by more than a degree.
             "timestamp_jitter",
             "timestamp_quantization",
+            // Rests that rock are found by wider limits, which take a slow turn's ends for rest.
+            "table_rocking",
         ];
         if !self.found.iter().any(|found| wrong.contains(&found.id.as_str())) {
             self.take(wobble::examine(view));

@@ -21,7 +21,8 @@ pub struct Outcome {
 impl Outcome {
     /// Not told where another gate's finding explains it; what it could have seen stands.
     pub fn unless(self, explained: bool) -> Self {
-        Self { found: self.found.filter(|_| !explained), ..self }
+        let clipped = if explained { Vec::new() } else { self.clipped };
+        Self { found: self.found.filter(|_| !explained), clipped, ..self }
     }
 }
 

@@ -7,7 +7,7 @@
 use super::null::FALSE_ALARMS;
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::data::Deed;
-use crate::diagnose::twin::noise::Noise;
+use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
 
 /// Noise in motion over that at rest, squared, that a diagnosis has to bear.
 const BORNE: f64 = 2.25;
@@ -26,7 +26,9 @@ pub fn restless(twin: &Twin, noise: &Noise) -> Option<Restless> {
     let moved = twin.stretches.iter().filter(|stretch| {
         matches!(stretch.deed, Deed::Move | Deed::Turn { .. }) && !stretch.excluded && !stretch.broken
     });
-    let times = noise.motion_scale;
+    // A walk that nobody names is no excuse.
+    let walks = noise.bias_walk > BIAS_WALK_FLOOR || noise.force_walk > FORCE_WALK_FLOOR;
+    let times = if walks { noise.motion_scale } else { noise.moves_scatter };
     let p_value = chance(times, moved.count());
     (p_value < FALSE_ALARMS).then_some(Restless { times, p_value })
 }

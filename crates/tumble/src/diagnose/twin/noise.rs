@@ -28,6 +28,8 @@ pub struct Noise {
     pub walk_in_motion: [f64; 2],
     /// Factor on the rate density in motion.
     pub motion_scale: f64,
+    /// By what factor moves from rest to rest scatter if no bias walked.
+    pub moves_scatter: f64,
     /// rad.
     pub stop_sigma_rad: f64,
     /// rad; none where the box is not known to be square.
@@ -99,6 +101,7 @@ impl Noise {
             contact_sigma_rad: CONTACT_RAD,
             pivot_sigma_m: PIVOT_SIGMA_M,
             motion_scale: 1.0,
+            moves_scatter: 1.0,
             slide_rad: 0.0,
             ..*self
         }
@@ -115,6 +118,7 @@ impl Noise {
             force_walk: FORCE_WALK_FLOOR,
             walk_in_motion: [1.0; 2],
             motion_scale: f64::from(device.motion_scale).max(1.0),
+            moves_scatter: f64::from(device.moves_scatter).max(f64::from(device.motion_scale)).max(1.0),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
             contact_sigma_rad: f64::from(device.contact_sigma_rad).max(CONTACT_RAD),
