@@ -57,9 +57,8 @@ pub fn mend(recording: &Recording, inference: &Inference, mut readings: Vec<Read
             | "gyro_coarse_quantization"
             | "gyro_dead_zone"
             | "axis_mapping"
-            | "wrong_full_scale"
-            | "shock" => "numbers are less sure than their sigmas say",
-            // What swings or stops short distorts no sample, and the estimator counts the lost itself.
+            | "wrong_full_scale" => "numbers are less sure than their sigmas say",
+            // What swings, stops short or knocks distorts no sample, and the estimator counts the lost itself.
             _ => continue,
         };
         remarks.push(remark(found, done));

@@ -171,7 +171,7 @@ impl<const S: usize> Estimator<S> {
         self.adapt(tape);
         let begin = if self.passes >= 2 { prior::begin_narrow } else { prior::begin };
         begin(&mut self.walk.filter, &self.conditions, &self.start, &nominal);
-        let plated = self.walk.pass.facets.agree_or_not();
+        let plated = self.walk.pass.agreed || self.walk.pass.facets.agree_or_not();
         self.walk.restart(nominal);
         self.walk.pass.accounts = self.accounts;
         self.walk.pass.plated = plated;

@@ -37,6 +37,8 @@ pub struct Pass {
     pub force_walk: Wander<1>,
     /// Are there faces enough for the plate to be believed?
     pub plated: bool,
+    /// Were there in a stretch before attitude was lost? The faces of another stretch then only share the box's axes.
+    pub agreed: bool,
     /// Is the prior still wide?
     pub coarse: bool,
     pub(super) nominal: Nominal,
@@ -100,6 +102,7 @@ impl Pass {
             rate_walks: [Wander::new(WALK_FLOOR); 2],
             force_walk: Wander::new(FORCE_WALK_FLOOR),
             plated: true,
+            agreed: false,
             coarse: true,
             nominal,
             now: nominal,

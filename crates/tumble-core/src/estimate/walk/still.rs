@@ -147,6 +147,7 @@ impl<const S: usize> Walk<S> {
         if self.pass.chains > 1 {
             // The first still's heading is lost, and with it where the Earth's rotation points.
             self.pass.nominal.earth_rad_s = Vector3::zeros();
+            self.pass.agreed |= self.pass.facets.agree_or_not();
             self.pass.facets = Facets::default();
         }
         for axis in 0..3 {
