@@ -101,6 +101,7 @@ impl Session<'_> {
     fn judged(&self, tape: &HostTape, estimate: Result<Estimate, Reason>) -> Outcome {
         let judgement = match &estimate {
             Ok(estimate) => judge::judge(estimate, tape, self.lost).0,
+            Err(_) if !judge::missing(tape).is_empty() => judge::nothing_to_estimate(tape),
             Err(reason) => Judgement { verdict: Verdict::Rejected, reasons: [*reason].into_iter().collect() },
         };
         let mut outcome = Outcome {

@@ -86,6 +86,20 @@ pub fn judge<const R: usize, const S: usize>(
     (Judgement { verdict: bench.verdict, reasons: bench.reasons }, accepted)
 }
 
+/// What a session lacks of six faces and of turns about three axes: what to say where it gave no estimate to judge. A rest of minutes on one
+/// face alone, whose numbers nothing tells apart, is more than `f32` bears.
+pub fn missing<const R: usize, const S: usize>(tape: &Tape<R, S>) -> Vec<Reason, 2> {
+    let (held, turned) = done(tape);
+    let mut reasons = Vec::new();
+    if held != FaceSet::FULL {
+        let _ = reasons.push(Reason::FacesMissing { missing: held.complement() });
+    }
+    if turned != 0b111 {
+        let _ = reasons.push(Reason::TurnsMissing { axes: !turned & 0b111 });
+    }
+    reasons
+}
+
 fn warn_of_the_session<const R: usize, const S: usize>(
     estimate: &Estimate,
     tape: &Tape<R, S>,
@@ -224,9 +238,5 @@ fn done<const R: usize, const S: usize>(tape: &Tape<R, S>) -> (FaceSet, u8) {
 
 /// A session with nothing to estimate from: rejected, with what is missing.
 pub fn nothing_to_estimate<const R: usize, const S: usize>(tape: &Tape<R, S>) -> Judgement {
-    let (held, turned) = done(tape);
-    let mut bench = Bench { verdict: Verdict::Rejected, reasons: Vec::new() };
-    bench.reject(Reason::TurnsMissing { axes: !turned & 0b111 });
-    bench.reject(Reason::FacesMissing { missing: held.complement() });
-    Judgement { verdict: bench.verdict, reasons: bench.reasons }
+    Judgement { verdict: Verdict::Rejected, reasons: missing(tape).into_iter().collect() }
 }
