@@ -2,7 +2,7 @@
 //!
 //! Statistic: the longest run of equal readings of one channel. Noise of σ on steps of Δ makes neighbours equal with `p ≈ Δ/(2√π σ)`; p is
 //! counted in windows of a second and the ninth decile of these taken, which is that of rests, where nothing else parts neighbours. A run
-//! of L then happens by chance in N samples with at most `N p^(L−1)`. What stands at the channel's own end clips, and a value to which a driver
+//! of L then happens by chance in N samples with at most `N p^(L−1)`. What stands at a level again and again clips, and a value to which a driver
 //! sets small rates is stood at again and again: neither is frozen. Where p is near one (steps far above the noise) no run is too long.
 
 use std::ops::Range;
@@ -36,9 +36,13 @@ struct Run {
     ln_p: f64,
 }
 
-/// The gate; `stale` samples repeat in all channels for another reason.
-pub fn examine(view: &View, stale: &[usize]) -> Outcome {
-    let (runs, least): (Vec<Vec<Run>>, Vec<f64>) = (0..6).map(|channel| frozen(view, stale, channel)).unzip();
+/// The gate; `stale` samples repeat in all channels for another reason, and `clipped` ones stand at a level.
+pub fn examine(view: &View, stale: &[usize], clipped: &[(usize, u8)]) -> Outcome {
+    let of = |channel: usize| {
+        let clips = |index: usize| clipped.iter().any(|(at, channels)| *at == index && channels >> channel & 1 == 1);
+        frozen(view, stale, channel, clips)
+    };
+    let (runs, least): (Vec<Vec<Run>>, Vec<f64>) = (0..6).map(of).unzip();
     let least_s = least.into_iter().fold(f64::INFINITY, f64::min);
     let mut outcome = Outcome { limit: limit(&CARD, least_s, "s", ""), ..Outcome::default() };
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
@@ -64,7 +68,7 @@ pub fn examine(view: &View, stale: &[usize]) -> Outcome {
 }
 
 /// Runs of one channel that chance does not make, and the least length that would be told, s.
-fn frozen(view: &View, stale: &[usize], channel: usize) -> (Vec<Run>, f64) {
+fn frozen(view: &View, stale: &[usize], channel: usize, clips: impl Fn(usize) -> bool) -> (Vec<Run>, f64) {
     let values = &view.channels[channel];
     let same = |index: usize| values[index] == values[index - 1] && stale.binary_search(&index).is_err();
     let window = view.count(WINDOW_S).max(20);
@@ -76,9 +80,6 @@ fn frozen(view: &View, stale: &[usize], channel: usize) -> (Vec<Run>, f64) {
     let ln_equal = super::chance::quantile(&mut shares, DECILE).ln();
     let ln_count = (6.0 * values.len() as f64).ln();
     let least = (1.0 + (LN_ALARM - ln_count) / ln_equal).max(LEAST_S / view.dt_s);
-    let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
-    let edge = view.step[channel];
-    let inside = |value: f64| value > low + edge && value < high - edge;
     let mut runs = Vec::new();
     let mut start = 0;
     for index in 1..=values.len() {
@@ -86,7 +87,7 @@ fn frozen(view: &View, stale: &[usize], channel: usize) -> (Vec<Run>, f64) {
             continue;
         }
         let length = (index - start) as f64;
-        if length >= least && inside(values[start]) {
+        if length >= least && !clips(start) {
             runs.push(Run { channel, samples: start..index, ln_p: ln_count + (length - 1.0) * ln_equal });
         }
         start = index;

@@ -163,7 +163,8 @@ impl Gated {
     fn look_at_values(&mut self, view: &View) {
         let stale = stale::examine(view);
         let (gyro, accel) = saturation::examine(view, &stale.repaired);
-        let frozen = frozen::examine(view, &stale.repaired);
+        let clipped = [gyro.clipped.as_slice(), accel.clipped.as_slice()].concat();
+        let frozen = frozen::examine(view, &stale.repaired, &clipped);
         self.take(stale);
         let mapped = mapping::examine(view, gyro.found.is_some(), accel.found.is_some());
         // Counts of a range too wide look coarse; the range says so already.

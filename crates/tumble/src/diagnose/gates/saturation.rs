@@ -5,7 +5,7 @@
 //! are both past M by more than 8 sigmas of noise plus two steps. A parabola drawn on by a quarter of its length has 1.9 sigmas of its own and ends
 //! in the peak of any motion slower than 5 Hz; beyond 4 sigmas on both sides is chance to 1e-9. Or *pile-up*: more readings at M than in
 //! all of the next three steps below it by a margin that fair coins reach with e⁻¹¹·⁵ (Hoeffding): a density that falls
-//! towards its extreme has fewer. Pile-up is only asked where noise is more than the half step by which
+//! towards its extreme has fewer. It must be there twice: a channel that stands still once at its extreme is frozen (`frozen.rs`). Pile-up is only asked where noise is more than the half step by which
 //! rounding alone scatters, so that a constant reading is not just rounding.
 //! Or (3) *the rail*: two readings at the end (0.2 %) of a range that is stated or shown by its step.
 //!
@@ -132,7 +132,7 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let margin = 8.0 * noise + 2.0 * step;
     let overshoots = long.iter().filter(|run| overshoots(view, values, run, sign, top + margin)).count();
     let fine = noise > coarse::LEAST_RATIO * step && noise > 0.0;
-    let ln_p = if fine && !long.is_empty() { ln_pile(values, sign, top, step) } else { 0.0 };
+    let ln_p = if fine && !long.is_empty() && runs.len() > 1 { ln_pile(values, sign, top, step) } else { 0.0 };
     let rail = if at_rail(view, channel, top) && samples.len() >= 2 { 15.0 } else { 0.0 };
     let evidence = 15.0 * overshoots as f64 - ln_p + rail;
     if overshoots > 0 || ln_p < LN_ALARM || rail > 0.0 {
@@ -163,17 +163,18 @@ fn ln_pile(values: &[f64], sign: f64, level: f64, step: f64) -> f64 {
 fn filtered(values: &[f64], stale: &[usize], sign: f64, top: f64, step: f64, least: usize) -> Option<f64> {
     let near: Vec<usize> = (0..values.len()).filter(|i| sign * values[*i] > (1.0 - SWING) * top).collect();
     let alike = |a: &usize, b: &usize| a + 1 == *b && (values[*a] - values[*b]).abs() < blur(step);
-    let mut levels: Vec<(f64, usize)> = Vec::new();
+    let mut levels: Vec<(f64, usize, usize)> = Vec::new();
     for run in near.chunk_by(alike) {
         let fresh = run.iter().filter(|i| stale.binary_search(i).is_err()).count();
         let level = sign * values[run[0]];
-        match levels.iter_mut().find(|(known, _)| (known - level).abs() < blur(step)) {
+        match levels.iter_mut().find(|(known, ..)| (known - level).abs() < blur(step)) {
             _ if fresh < least => {}
-            Some((_, count)) => *count += fresh,
-            None => levels.push((level, fresh)),
+            Some((_, count, runs)) => (*count, *runs) = (*count + fresh, *runs + 1),
+            None => levels.push((level, fresh, 1)),
         }
     }
-    levels.into_iter().max_by_key(|(_, count)| *count).map(|(level, _)| level)
+    let again = levels.into_iter().filter(|(_, _, runs)| *runs > 1);
+    again.max_by_key(|(_, count, _)| *count).map(|(level, ..)| level)
 }
 
 /// Readings in a row that are no accident. Two of noise σ are equal with p = Δ/(2√π σ), so that n in a row have pⁿ⁻¹; a hand's
