@@ -43,8 +43,9 @@ pub fn examine(view: &View, stale: &[usize], clipped: &[(usize, u8)]) -> Outcome
         frozen(view, stale, channel, clips)
     };
     let (runs, least): (Vec<Vec<Run>>, Vec<f64>) = (0..6).map(of).unzip();
-    let least_s = least.into_iter().fold(f64::INFINITY, f64::min);
-    let mut outcome = Outcome { limit: limit(&CARD, least_s, "s", ""), ..Outcome::default() };
+    let least_s = least.into_iter().fold(0.0, f64::max);
+    let why = "of the channel whose steps are the coarsest beside its noise";
+    let mut outcome = Outcome { limit: limit(&CARD, least_s, "s", why), ..Outcome::default() };
     let runs: Vec<Run> = runs.into_iter().flatten().collect();
     let Some(longest) = runs.iter().max_by_key(|run| run.samples.len()) else { return outcome };
     let mask = runs.iter().fold(0, |mask, run| mask | 1 << run.channel);
