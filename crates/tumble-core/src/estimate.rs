@@ -1,6 +1,7 @@
 //! From the tape to numbers with sigmas. `docs/method.md` has the equations.
 
 pub mod closures;
+pub mod conditions;
 pub mod covariance;
 pub mod device;
 pub mod facets;
@@ -26,5 +27,6 @@ pub mod walk;
 pub mod wander;
 pub mod wobble;
 
-pub use device::{Breakdown, Conditions, Estimate, Estimator, PARAMETERS, Progress};
+pub use conditions::Conditions;
+pub use device::{Breakdown, Estimate, Estimator, PARAMETERS, Progress};
 pub use noise::Noise;

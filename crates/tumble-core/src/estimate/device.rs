@@ -6,6 +6,7 @@
 
 use nalgebra::SMatrix;
 
+use super::conditions::Conditions;
 use super::facets::{CONTACT, SQUARE};
 use super::model::Nominal;
 use super::noise::{Noise, PIVOT_FLOOR};
@@ -17,9 +18,8 @@ use super::sums::SegmentNoise;
 use super::walk::Walk;
 use super::walk::still::{EARTH_SIGMA, MEDIAN};
 use super::wander::Found;
-use crate::calibration::{Calibration, Frame};
+use crate::calibration::Calibration;
 use crate::order::median;
-use crate::setup::{BoxFaces, TurnStops};
 use crate::tape::Tape;
 
 /// At least this many passes: three to come near, one to judge the noise, one to confirm.
@@ -41,28 +41,6 @@ const MIN_HINGES: usize = 5;
 /// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
 const DISTURBED: f32 = 0.05;
 const DISTURBANCE_LOG: f32 = 9.21;
-
-/// What the session was told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conditions {
-    /// How turns end.
-    pub stops: TurnStops,
-    /// Whether the box is square.
-    pub faces: BoxFaces,
-    /// Local gravity, m/s².
-    pub gravity_mps2: f32,
-}
-
-impl Conditions {
-    /// Nothing promised.
-    pub const CAUTIOUS: Self =
-        Self { stops: TurnStops::ByHand, faces: BoxFaces::Unknown, gravity_mps2: crate::STANDARD_GRAVITY_MPS2 };
-
-    /// The axes that results are given in.
-    pub fn frame(&self) -> Frame {
-        if self.faces == BoxFaces::Square { Frame::Box } else { Frame::Accelerometer }
-    }
-}
 
 /// Order of [`Estimate::covariance`]: accelerometer bias 3, correction 9 by rows, gyroscope bias 3, correction 9.
 pub const PARAMETERS: usize = 24;

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::device::Conditions;
+use super::conditions::Conditions;
 use super::filter::Filter;
 use super::model::Nominal;
 use super::state::{Block, STATES};

@@ -26,7 +26,8 @@
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use super::device::{Breakdown, Conditions};
+use super::conditions::Conditions;
+use super::device::Breakdown;
 use super::noise::Noise;
 use super::prior::CORRECTION_SIGMA;
 use super::start;

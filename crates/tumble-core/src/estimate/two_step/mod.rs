@@ -28,7 +28,8 @@
 
 use nalgebra::SMatrix;
 
-use super::device::{Breakdown, Conditions};
+use super::conditions::Conditions;
+use super::device::Breakdown;
 use super::six_face::{Real, Setting, SixFace, Tilt, visits};
 use crate::tape::Tape;
 
