@@ -203,6 +203,9 @@ impl<const S: usize> Estimator<S> {
 
     /// Which account of the rates at rest stands: the one with a sensitivity to force has nine numbers more, each of them free under the
     /// walk that fits it best, so that twice the logarithm of the likelihoods' ratio is χ²₉ of noise or of a walk alone.
+    ///
+    /// Not inlined: its sums and accounts (6 KB) would lie on the stack through the whole walk.
+    #[inline(never)]
     fn weigh_accounts(&mut self, session_s: f32) {
         let pass = &self.walk.pass;
         let [plain, felt] = [0, 1].map(|k| pass.accounts[k].and(pass.rate_walks[k].found()));
@@ -273,23 +276,28 @@ impl<const S: usize> Estimator<S> {
         self.walk.pass.closures.variance(self.conditions.stops, &scales)
     }
 
+    /// Median over the moves that have it, and how many these are. Not inlined, for it would stand in the flash twice.
+    #[inline(never)]
+    fn of_moves(&self, of: fn(&SegmentNoise) -> f32) -> Option<(f32, usize)> {
+        let mut values: heapless::Vec<f32, S> =
+            self.walk.noise.iter().map(of).filter(|value| value.is_finite()).collect();
+        median(&mut values).map(|middle| (middle, values.len()))
+    }
+
     /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
     /// out even so is down-weighted by itself, as a Student's t distribution would: `(ν + χ²) / (ν + 2)`.
     /// True if no move's weight changed much.
     fn scale_motion(&mut self) -> bool {
-        let mut hinges: heapless::Vec<f32, S> =
-            self.walk.noise.iter().map(|noise| noise.hinge_nis).filter(|nis| nis.is_finite()).collect();
-        if hinges.len() < MIN_HINGES {
+        let Some((middle, hinges)) = self.of_moves(|noise| noise.hinge_nis).filter(|(_, count)| *count >= MIN_HINGES)
+        else {
             return true;
-        }
-        let Some(middle) = median(&mut hinges) else { return true };
-        let mut scatter: heapless::Vec<f32, S> =
-            self.walk.noise.iter().map(|noise| noise.hinge_scatter).filter(|scatter| scatter.is_finite()).collect();
-        self.noise.moves_scatter = median(&mut scatter).map_or(1.0, |scatter| scatter.max(1.0));
+        };
+        self.noise.moves_scatter =
+            self.of_moves(|noise| noise.hinge_scatter).map_or(1.0, |(scatter, _)| scatter.max(1.0));
         // The share of χ²₂ below the median of n is ½ in the mean, with a variance of 1/(4 (n + 2)). (The median itself is far from
         // normal: a limit on it that should be passed once in a hundred sessions was passed in three.)
         let below = 1.0 - libm::expf(-0.5 * middle);
-        let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges.len() as f32 + 2.0);
+        let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges as f32 + 2.0);
         let excess = match self.noise.motion_scale > 1.0 || certain {
             true => (middle / MEDIAN).max(1.0 / self.noise.motion_scale),
             false => 1.0,

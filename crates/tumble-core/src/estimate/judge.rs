@@ -52,10 +52,13 @@ impl Bench {
     /// What a person did or the sensor suffered stands before what follows from it number by number.
     fn causes_first(&mut self) {
         let follows = |reason: &Reason| matches!(reason, Reason::NotObservable { .. } | Reason::Uncertain { .. });
-        let causes: Vec<Reason, 8> = self.reasons.iter().filter(|reason| !follows(reason)).copied().collect();
-        self.reasons.retain(follows);
-        let consequences = core::mem::replace(&mut self.reasons, causes);
-        let _ = self.reasons.extend_from_slice(&consequences);
+        let mut causes = 0;
+        for at in 0..self.reasons.len() {
+            if !follows(&self.reasons[at]) {
+                self.reasons[causes..=at].rotate_right(1);
+                causes += 1;
+            }
+        }
     }
 
     fn warn(&mut self, reason: Reason) {

@@ -66,6 +66,9 @@ impl<const S: usize> Estimator<S> {
     /// The bias that is said of the session. With a sensitivity to force it is that of the rests' own account, for the filter's last one
     /// knows the last face best. One that wanders is its mean, because who subtracts it later wants to know: and the sigma that is said of it
     /// tells how far it went. What drifts straight is said at the session's middle. Else its sigma has the wandering that rests leave possible.
+    ///
+    /// Not inlined, as `weigh_accounts`.
+    #[inline(never)]
     fn settle_bias<const R: usize>(
         &self,
         tape: &Tape<R, S>,
