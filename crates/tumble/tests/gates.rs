@@ -238,6 +238,23 @@ fn plain(seed: u64) -> Recording {
     recording(&made.samples, Metadata::default(), 6)
 }
 
+/// Both leave one spacing in a hundred twice as long. Over a lost sample the motion goes on twice as far.
+#[test]
+fn a_coarse_clock_is_told_from_samples_that_are_lost_evenly() {
+    let clean = plain(5);
+    let slow = |row: &Row| Row { t_s: 0.005 * (1.01 * row.t_s / 0.005).floor(), ..*row };
+    let clock = Recording { rows: clean.rows.iter().map(slow).collect(), ..clean.clone() };
+    let kept = clean.rows.iter().enumerate().filter(|(k, _)| k % 100 != 57).map(|(_, row)| *row);
+    let lossy = Recording { rows: kept.collect(), ..clean.clone() };
+    for (recording, id) in [(clock, "timestamp_quantization"), (lossy, "dropped_samples")] {
+        let gated = gates(&recording);
+        let stamps = ["timestamp_quantization", "timestamp_jitter", "dropped_samples"];
+        let named: Vec<&str> =
+            gated.found.iter().map(|found| found.id.as_str()).filter(|found| stamps.contains(found)).collect();
+        assert_eq!(named, [id], "{}", words(&gated));
+    }
+}
+
 /// A converter clips before its filter: what comes out swings past the level, settles on it and leaves it slowly, so that the largest reading is
 /// no level at all.
 #[test]

@@ -27,6 +27,9 @@ const LEAST_BEATS: f64 = 10.0;
 /// Scatter of the times from beat to beat over their mean. Of samples lost at random it is 1, and of nine such times below a quarter in
 /// fewer than one case of a million.
 const EVEN: f64 = 0.25;
+/// From one sample to the next rates change by more than this times their noise where they move, and so many beats must lie there.
+const MOVING: f64 = 6.0;
+const LEAST_MOVING: f64 = 3.0;
 /// Least step as a share of the interval, and in s: text has 1e-4 s, and a tick of 1/4096 s is 2.4e-4.
 const LEAST_STEP: f64 = 0.03;
 const LEAST_STEP_S: f64 = 1.5e-4;
@@ -115,19 +118,30 @@ fn clock_step(view: &View, dt: &[f64]) -> Option<(f64, f64)> {
         let low = (mean_s / step).floor();
         let share = |wanted: f64| dt.iter().filter(|dt| multiple(dt) == wanted).count() as f64 / dt.len() as f64;
         let (below, above) = (share(low), share(low + 1.0));
-        let rare = if low < 2.0 && !beats_evenly(dt, step, low + 1.0) { 0.01 * dt.len() as f64 } else { LEAST_BEATS };
-        let alternates = below + above > 0.9 && below.min(above) * dt.len() as f64 > rare;
+        let long: Vec<usize> = (0..dt.len()).filter(|i| multiple(&dt[*i]) == low + 1.0).collect();
+        let alternates = below + above > 0.9 && below.min(above) * dt.len() as f64 > LEAST_BEATS;
+        let alternates = alternates && (low >= 2.0 || beats(view, &long, dt.len()));
         let bounded = excursion(&view.t_s) < 3.0 * step;
         (on > 0.98 && alternates && bounded).then(|| (step, dt.len() as f64 * below.min(above)))
     })
 }
 
-/// Do the spacings of so many steps come at even times?
-fn beats_evenly(dt: &[f64], step: f64, long: f64) -> bool {
-    let at: Vec<f64> = (0..dt.len()).filter(|i| (dt[*i] / step).round() == long).map(|i| i as f64).collect();
-    let apart: Vec<f64> = at.windows(2).map(|pair| pair[1] - pair[0]).collect();
+/// Of spacings of one step and of two: are the long ones a clock's beats? A clock beats evenly, and motion goes on through a beat as through any
+/// other sample; over one that is missing it goes on twice as far, however evenly a reader loses them. Without motion one in a hundred is
+/// asked for.
+fn beats(view: &View, at: &[usize], count: usize) -> bool {
+    let apart: Vec<f64> = at.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-    at.len() as f64 >= LEAST_BEATS && view::scatter(&apart) < EVEN * mean
+    let even = at.len() as f64 >= LEAST_BEATS && view::scatter(&apart) < EVEN * mean;
+    let many = at.len() as f64 > 0.01 * count as f64;
+    let noise = view.sigma[..3].iter().fold(0.0, |most, sigma| sigma.max(most));
+    let change = |index: usize| (view.rate(index + 1) - view.rate(index)).norm();
+    let inside = at.iter().copied().filter(|i| *i > 0 && i + 2 < view.len());
+    let (moving, across, beside) = inside
+        .map(|i| (change(i), 0.5 * (change(i - 1) + change(i + 1))))
+        .filter(|(_, beside)| *beside > MOVING * noise)
+        .fold((0.0, 0.0, 0.0), |(count, a, b), (across, beside)| (count + 1.0, a + across, b + beside));
+    if moving >= LEAST_MOVING { (even || many) && across < 1.5 * beside } else { many }
 }
 
 /// Spacings (to 10 µs) that at least [`LEAST_BEATS`] have, the commonest eight.
