@@ -10,6 +10,7 @@ pub mod group;
 pub mod judge;
 pub mod likelihood;
 pub mod model;
+pub mod moves;
 pub mod noise;
 pub mod normal;
 pub mod prior;

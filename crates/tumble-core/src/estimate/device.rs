@@ -9,6 +9,7 @@ use nalgebra::SMatrix;
 use super::conditions::Conditions;
 use super::facets::{CONTACT, SQUARE};
 use super::model::Nominal;
+use super::moves;
 use super::noise::{Noise, PIVOT_FLOOR};
 use super::prior::{self, CORRECTION_SIGMA};
 use super::resting::{Account, FELT};
@@ -16,10 +17,9 @@ use super::start;
 use super::state::Block;
 use super::sums::SegmentNoise;
 use super::walk::Walk;
-use super::walk::still::{EARTH_SIGMA, MEDIAN};
+use super::walk::still::EARTH_SIGMA;
 use super::wander::Found;
 use crate::calibration::Calibration;
-use crate::order::median;
 use crate::tape::Tape;
 
 /// At least this many passes: three to come near, one to judge the noise, one to confirm.
@@ -34,13 +34,6 @@ const SETTLED: u32 = 3;
 const LAST_ADAPTING: u32 = 14;
 /// The noise has settled when no part of it changed by more than this share in a pass.
 const NOISE_SETTLED: f32 = 0.1;
-/// Upper 1 % point of the normal distribution.
-const SIGNIFICANT: f32 = 2.326;
-/// Moves needed for their median to mean something.
-const MIN_HINGES: usize = 5;
-/// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
-const DISTURBED: f32 = 0.05;
-const DISTURBANCE_LOG: f32 = 9.21;
 
 /// Order of [`Estimate::covariance`]: accelerometer bias 3, correction 9 by rows, gyroscope bias 3, correction 9.
 pub const PARAMETERS: usize = 24;
@@ -187,7 +180,7 @@ impl<const S: usize> Estimator<S> {
             self.noise.pivot_sigma_m = libm::sqrtf(variance);
         }
         self.settle();
-        let steady = self.scale_motion();
+        let steady = moves::weigh(&mut self.noise, &mut self.walk.noise, NOISE_SETTLED);
         self.walk.adapting = self.passes < LAST_ADAPTING && !(steady && before.is_near(&self.noise, NOISE_SETTLED));
     }
 
@@ -275,42 +268,6 @@ impl<const S: usize> Estimator<S> {
         });
         self.walk.pass.closures.variance(self.conditions.stops, &scales)
     }
-
-    /// Median over the moves that have it, and how many these are. Not inlined, for it would stand in the flash twice.
-    #[inline(never)]
-    fn of_moves(&self, of: fn(&SegmentNoise) -> f32) -> Option<(f32, usize)> {
-        let mut values: heapless::Vec<f32, S> =
-            self.walk.noise.iter().map(of).filter(|value| value.is_finite()).collect();
-        median(&mut values).map(|middle| (middle, values.len()))
-    }
-
-    /// Half of the moves have a χ²₂ above 1.386: where their median is larger, all motion is noisier than rest. A move far
-    /// out even so is down-weighted by itself, as a Student's t distribution would: `(ν + χ²) / (ν + 2)`.
-    /// True if no move's weight changed much.
-    fn scale_motion(&mut self) -> bool {
-        let Some((middle, hinges)) = self.of_moves(|noise| noise.hinge_nis).filter(|(_, count)| *count >= MIN_HINGES)
-        else {
-            return true;
-        };
-        self.noise.moves_scatter =
-            self.of_moves(|noise| noise.hinge_scatter).map_or(1.0, |(scatter, _)| scatter.max(1.0));
-        // The share of χ²₂ below the median of n is ½ in the mean, with a variance of 1/(4 (n + 2)). (The median itself is far from
-        // normal: a limit on it that should be passed once in a hundred sessions was passed in three.)
-        let below = 1.0 - libm::expf(-0.5 * middle);
-        let certain = below > 0.5 + 0.5 * SIGNIFICANT / libm::sqrtf(hinges as f32 + 2.0);
-        let excess = match self.noise.motion_scale > 1.0 || certain {
-            true => (middle / MEDIAN).max(1.0 / self.noise.motion_scale),
-            false => 1.0,
-        };
-        self.noise.motion_scale *= excess;
-        let mut steady = true;
-        for noise in &mut self.walk.noise {
-            let scale = disturbance(noise.hinge_nis / excess);
-            steady &= libm::fabsf(scale - noise.rate_scale) < NOISE_SETTLED * scale;
-            noise.rate_scale = scale;
-        }
-        steady
-    }
 }
 
 /// Brings a sigma to what was found; `last` is the last pass's factor.
@@ -319,21 +276,4 @@ fn damp(sigma: &mut f32, found: f32, last: &mut f32) {
     let back = (step - 1.0) * (*last - 1.0) < 0.0;
     *last = if back { libm::sqrtf(step) } else { step };
     *sigma *= *last;
-}
-
-/// By how much more variance than other moves' one is to be taken, whose level error is `nis` (χ²₂ if it is like the others). One in
-/// twenty is taken to be disturbed, its variance s times as large, ln s uniform up to ln 1e4. With `a = χ²/2` the likelihoods are
-/// `e^−a` and, over u = 1/s, `∫ e^−au du = (1 − e^−a)/a`; the mean of u, by which the move's information is to be multiplied, has
-/// `∫ u e^−au du = (1 − (1 + a) e^−a)/a²`. What lies within χ²₂ is left alone, what lies far out gets a variance of χ²/2.
-fn disturbance(nis: f32) -> f32 {
-    let a = 0.5 * nis;
-    // Not a number for a move without rests on both sides. Below a tenth of a sigma both integrals are constants.
-    if a.is_nan() || a <= 0.1 {
-        return 1.0;
-    }
-    let like = libm::expf(-a);
-    let usual = (1.0 - DISTURBED) * like;
-    let density = DISTURBED / DISTURBANCE_LOG;
-    let disturbed = density * (1.0 - like) / a;
-    (usual + disturbed) / (usual + density * (1.0 - (1.0 + a) * like) / (a * a))
 }

@@ -112,7 +112,7 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     if lost > 0 {
         bench.warn(Reason::SamplesLost { samples: lost });
     }
-    let motion = estimate.noise.motion_scale;
+    let motion = estimate.noise.turn_scale.max(estimate.noise.hand_scale);
     if motion > MOTION_LIMIT {
         bench.warn(Reason::PoorFit { nis_per_dof: motion });
     } else if !estimate.converged && estimate.moved <= MOVED_LIMIT {

@@ -57,10 +57,10 @@ pub struct Noise {
     pub account_walk: f32,
     /// Growth of an accelerometer bias's variance, (m/s²)²/s.
     pub force_walk: f32,
-    /// Factor on `rate_density` while it moves.
-    pub motion_scale: f32,
-    /// By what factor of `rate_density` moves from rest to rest scatter if no bias walked: what nobody but a walk accounts for.
-    pub moves_scatter: f32,
+    /// Factor on `rate_density` in turns on the table …
+    pub turn_scale: f32,
+    /// … and in moves by hand, whose put-downs ring.
+    pub hand_scale: f32,
     /// One stop of a turn, rad.
     pub stop_sigma_rad: f32,
     /// How far a turn's axis is from where it is in other turns, m.
@@ -112,8 +112,8 @@ impl Noise {
             g_sensitivity: Matrix3::zeros(),
             account_walk: 0.0,
             force_walk: FORCE_WALK_FLOOR,
-            motion_scale: 1.0,
-            moves_scatter: 1.0,
+            turn_scale: 1.0,
+            hand_scale: 1.0,
             stop_sigma_rad: if stops == TurnStops::Fenced { FENCED } else { BY_HAND },
             pivot_sigma_m: PIVOT,
             contact_sigma_rad: CONTACT,
@@ -140,7 +140,8 @@ impl Noise {
             [
                 noise.total_bias_walk(),
                 noise.force_walk,
-                noise.motion_scale,
+                noise.turn_scale,
+                noise.hand_scale,
                 noise.stop_sigma_rad,
                 noise.pivot_sigma_m,
                 facet,
@@ -185,6 +186,11 @@ impl Noise {
         self.g_sensitivity = account.sensitivity.matrix;
         let offset = account.sensitivity.sigma.norm_squared() / 9.0 * gravity_mps2 * gravity_mps2;
         self.account_walk = 0.125 * account.slope.variance * session_s + 2.0 * offset * visits / session_s.max(1.0);
+    }
+
+    /// Factor on `rate_density` in this motion.
+    pub fn moving(&self, segment: &Segment) -> f32 {
+        if matches!(segment.kind, Kind::Hand) { self.hand_scale } else { self.turn_scale }
     }
 
     /// All that a gyroscope bias's variance grows by, (rad/s)²/s.

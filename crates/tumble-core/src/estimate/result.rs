@@ -119,9 +119,8 @@ impl<const S: usize> Estimator<S> {
             count += 1.0;
         }
         let sums = self.walk.pass.sums;
-        let moves = self.walk.noise.iter().filter(|noise| noise.hinge_nis.is_finite());
-        let (hinge, dof) =
-            moves.fold((0.0, 0.0), |(sum, dof), noise| (sum + noise.hinge_nis / noise.rate_scale, dof + 2.0));
+        let moves = self.walk.noise.iter().filter_map(|noise| Some(noise.hinge?.nis(&self.noise) / noise.rate_scale));
+        let (hinge, dof) = moves.fold((0.0, 0.0), |(sum, dof), nis| (sum + nis, dof + 2.0));
         Fit {
             nis_per_dof: (sums.rest.0 + hinge) / (sums.rest.1 + dof).max(1.0),
             gravity_rms_mps2: libm::sqrtf(squares / count.max(1.0)),

@@ -1,6 +1,7 @@
 //! What a pass's innovations say of the noise.
 
 use super::likelihood::Likelihood;
+use super::moves::Hinge;
 use super::turn_noise::Pool;
 
 /// What a pass learns about a segment, carried into the next.
@@ -10,11 +11,8 @@ pub struct SegmentNoise {
     pub force_scale: f32,
     /// Factor on the gyroscope's noise during this move.
     pub rate_scale: f32,
-    /// Level error after this move about the nominal, normalised without `rate_scale`: χ² with 2 degrees of freedom if the
-    /// move fits. NaN if there was no rest on both sides.
-    pub hinge_nis: f32,
-    /// By what factor of the gyroscope's noise half of such moves would end as far off, if no bias walked.
-    pub hinge_scatter: f32,
+    /// The level after this move; none if there was no rest on both sides.
+    pub hinge: Option<Hinge>,
 }
 
 /// Sums over a pass.

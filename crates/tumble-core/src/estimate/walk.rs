@@ -98,12 +98,7 @@ impl<const S: usize> Walk<S> {
         let scale = if matches!(segment.kind, Kind::OnTable { .. }) { TURN_FORCE_SCALE } else { 1.0 };
         while self.noise.len() <= self.pass.segment {
             // As many as the tape has segments: there is room.
-            let _ = self.noise.push(SegmentNoise {
-                force_scale: scale,
-                rate_scale: 1.0,
-                hinge_nis: f32::NAN,
-                hinge_scatter: f32::NAN,
-            });
+            let _ = self.noise.push(SegmentNoise { force_scale: scale, rate_scale: 1.0, hinge: None });
         }
         let (start_us, end_us) =
             tape.segments().last().map_or((0, 0), |last| (tape.segments()[0].start_us, last.end_us));
@@ -117,6 +112,7 @@ impl<const S: usize> Walk<S> {
             return;
         }
         self.pass.hinge = self.pass.aligned.then_some(self.pass.segment);
+        self.pass.in_hand = matches!(segment.kind, Kind::Hand);
         if matches!(segment.kind, Kind::OnTable { .. }) {
             (0..3).for_each(|axis| self.filter.reset(Block::Pivot, axis, 0.0, noise.pivot_sigma_m));
             (0..2).for_each(|axis| self.filter.reset(Block::Wobble, axis, 0.0, noise.wobble_sigma_rad));
@@ -201,7 +197,7 @@ impl<const S: usize> Walk<S> {
     /// Variance of a rotation per second of this move. A steady turn holds its rates as a rest does, and what rounding leaves in
     /// them is coherent: as white noise it has its variance times the turn's length. A hand's move sweeps over many steps.
     fn rate_density(&self, segment: &Segment, noise: &Noise) -> f32 {
-        let own = noise.rate_density * noise.motion_scale * self.noise[self.pass.segment].rate_scale;
+        let own = noise.rate_density * noise.moving(segment) * self.noise[self.pass.segment].rate_scale;
         let steady = matches!(segment.kind, Kind::OnTable { .. });
         own + if steady { noise.rate_rounding * segment.duration_s() } else { 0.0 }
     }

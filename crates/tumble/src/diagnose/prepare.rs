@@ -71,6 +71,9 @@ pub fn prepare_settled(
         (stretch.broken, stretch.excluded) = (true, true);
     }
     let noise = Noise::new(&device_noise, conditions.stops);
-    let twin = Twin::new(samples, stretches, start, noise, &conditions);
+    let segments = settled.estimate.iter().flat_map(|(_, segments)| segments).enumerate();
+    let kept = segments.filter(|(number, _)| !masked.contains(number));
+    let hinges = kept.filter_map(|(_, segment)| segment.hinge).collect();
+    let twin = Twin::new(samples, stretches, start, (noise, hinges), &conditions);
     Ok(Prepared { twin })
 }

@@ -121,8 +121,9 @@ fn hinge<'a>(
     let up = |rest: &Stretch| (accel.correction * (rest.mean_force - accel.bias)).normalize();
     let (before, after) = (up(from), up(to));
     let level = f64::from(noise.force_density) / tumble_sim::STANDARD_GRAVITY_MPS2.powi(2);
-    let move_s: f64 = moves.iter().map(|stretch| stretch.duration_s).sum();
-    let rotation = f64::from(noise.rate_density * noise.motion_scale) * move_s;
+    let rotation =
+        |stretch: &&Stretch| f64::from(noise.rate_density * noise.moving(&stretch.segment)) * stretch.duration_s;
+    let rotation: f64 = moves.iter().map(rotation).sum();
     let sigma = (rotation + level * (1.0 / from.duration_s + 1.0 / to.duration_s)).sqrt();
     Block::new(0..9, move |x| {
         let correction = Matrix3::from_row_slice(x);

@@ -186,7 +186,7 @@ impl<T: Real> GyroMatrix<T> {
             count[column] += 1;
             let up = vector::<T>(&turn.face.normal());
             for (row, sums) in sums.iter_mut().enumerate() {
-                let white = setting.noise.rate_density * setting.noise.motion_scale * turn.seconds;
+                let white = setting.noise.rate_density * setting.noise.turn_scale * turn.seconds;
                 let earth = EARTH_SIGMA * EARTH_SHARE * turn.seconds;
                 let stop = 2.0 * setting.stop_sigma_rad * setting.stop_sigma_rad;
                 let (noise, stop) = if row == column { (white, stop) } else { (white + earth * earth, 0.0) };

@@ -114,7 +114,7 @@ impl<'a, T: Real> Pass<'a, T> {
         let gravity = real(self.setting.gravity_mps2);
         let Step { mut motion, middle } =
             navigation.step(&instant.rotation_rad, &force, dt_s, gravity, self.variant.pattern());
-        let rate = noise.rate_density * noise.motion_scale + EARTH_MEMORY_S * EARTH_SIGMA * EARTH_SIGMA;
+        let rate = noise.rate_density * noise.turn_scale + EARTH_MEMORY_S * EARTH_SIGMA * EARTH_SIGMA;
         motion.attitude_variance = dt_s * real(rate);
         motion.velocity_variance =
             dt_s * real::<T>(noise.force_density) * fit.force_scale[usize::from(instant.turning)];

@@ -63,8 +63,9 @@ pub struct Pass {
     pub(super) unplated: u16,
     /// Mean rate of this rest, rad/s, and how far from it a record's may be.
     pub(super) steady: (Vector3<f32>, f32),
-    /// The move since the last rest: its segment, its length, and that rest's levelling variance, rad².
+    /// The move since the last rest: its segment, whether a hand carried it, its length, and that rest's levelling variance, rad².
     pub(super) hinge: Option<usize>,
+    pub(super) in_hand: bool,
     pub(super) move_s: f32,
     pub(super) level_variance: f32,
     /// The widest prior sigma of a correction or, over gravity, of the accelerometer's bias, 1.
@@ -121,6 +122,7 @@ impl Pass {
             unplated: 0,
             steady: (Vector3::zeros(), 0.0),
             hinge: None,
+            in_hand: false,
             move_s: 0.0,
             level_variance: 0.0,
         }

@@ -6,6 +6,7 @@ use super::Walk;
 use super::pass::Visit;
 use crate::estimate::facets::Facets;
 use crate::estimate::model::{self, Observation};
+use crate::estimate::moves::Hinge;
 use crate::estimate::noise::{self, Noise, ROUNDED};
 use crate::estimate::scatter::scatter;
 use crate::estimate::state::Block;
@@ -22,8 +23,6 @@ pub(in crate::estimate) const EARTH_SIGMA: f32 = 5e-5;
 const LEVEL_SIGMA: f32 = 0.1;
 /// A record at rest whose rate is further than this from the rest's own is no rest: noise does that once in 5000 sessions of 300 numbers.
 const UNSTEADY_SIGMAS: f32 = 5.0;
-/// Of χ²₂.
-pub(in crate::estimate) const MEDIAN: f32 = 1.386;
 /// The level's prior in sigmas of the rest's own noise: as wide as `prior::narrow` makes the others.
 const LEVEL_WIDTH: f32 = 30.0;
 
@@ -126,10 +125,9 @@ impl<const S: usize> Walk<S> {
             let move_s = self.pass.move_s;
             let walked = noise.total_bias_walk() * self.pass.session_s / 6.0 * move_s * move_s
                 + noise.force_walk * (move_s + duration_s) / (self.gravity * self.gravity);
-            let (level, moved) = (before + variance, noise.rate_density * move_s);
-            let noise_of_it = &mut self.noise[hinge];
-            noise_of_it.hinge_nis = turn.norm_squared() / (level + moved * noise.motion_scale + walked);
-            noise_of_it.hinge_scatter = (turn.norm_squared() / MEDIAN - level) / moved;
+            let moved = noise.rate_density * move_s;
+            let (square, level, in_hand) = (turn.norm_squared(), before + variance, self.pass.in_hand);
+            self.noise[hinge].hinge = Some(Hinge { square, level, walked, moved, in_hand });
         }
     }
 

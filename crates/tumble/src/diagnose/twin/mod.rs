@@ -20,6 +20,7 @@ pub mod visit;
 mod walk;
 
 use tumble_core::estimate::Conditions;
+use tumble_core::estimate::moves::Hinge;
 use tumble_core::setup::{BoxFaces, TurnStops};
 
 use column::Column;
@@ -113,6 +114,8 @@ pub struct Twin {
     pub stops: TurnStops,
     /// m/s².
     pub gravity_mps2: f64,
+    /// How moves ended, as the device's estimator saw it.
+    pub hinges: Vec<Hinge>,
     /// Per segment: how much noisier than in the quiet rests its specific force is.
     pub force_scale: Vec<f64>,
     prior: Prior,
@@ -124,7 +127,7 @@ impl Twin {
         samples: Vec<Raw>,
         stretches: Vec<Stretch>,
         start: Nominal,
-        noise: Noise,
+        (noise, hinges): (Noise, Vec<Hinge>),
         conditions: &Conditions,
     ) -> Self {
         let gravity_mps2 = f64::from(conditions.gravity_mps2);
@@ -141,6 +144,7 @@ impl Twin {
             noise,
             stops: conditions.stops,
             gravity_mps2,
+            hinges,
             force_scale: Vec::new(),
             prior,
         };

@@ -26,10 +26,10 @@ pub struct Noise {
     pub force_walk: f64,
     /// Factors on both while the box moves, gyroscope's first: 1 for what wanders with time alone.
     pub walk_in_motion: [f64; 2],
-    /// Factor on the rate density in motion.
-    pub motion_scale: f64,
-    /// By what factor moves from rest to rest scatter if no bias walked.
-    pub moves_scatter: f64,
+    /// Factor on the rate density in turns on the table …
+    pub turn_scale: f64,
+    /// … and in a hand.
+    pub hand_scale: f64,
     /// rad.
     pub stop_sigma_rad: f64,
     /// rad; none where the box is not known to be square.
@@ -100,8 +100,8 @@ impl Noise {
             facet_sigma_rad: self.facet_sigma_rad.map(|sigma| sigma.min(SQUARE_RAD)),
             contact_sigma_rad: CONTACT_RAD,
             pivot_sigma_m: PIVOT_SIGMA_M,
-            motion_scale: 1.0,
-            moves_scatter: 1.0,
+            turn_scale: 1.0,
+            hand_scale: 1.0,
             slide_rad: 0.0,
             ..*self
         }
@@ -117,8 +117,8 @@ impl Noise {
             bias_walk: BIAS_WALK_FLOOR,
             force_walk: FORCE_WALK_FLOOR,
             walk_in_motion: [1.0; 2],
-            motion_scale: f64::from(device.motion_scale).max(1.0),
-            moves_scatter: f64::from(device.moves_scatter).max(f64::from(device.motion_scale)).max(1.0),
+            turn_scale: f64::from(device.turn_scale),
+            hand_scale: f64::from(device.hand_scale),
             stop_sigma_rad: if stops == TurnStops::Fenced { stop_sigma_rad.min(FENCE_CAP_RAD) } else { stop_sigma_rad },
             facet_sigma_rad: device.facet_sigma_rad.map(f64::from),
             contact_sigma_rad: f64::from(device.contact_sigma_rad).max(CONTACT_RAD),

@@ -86,7 +86,7 @@ impl<'a> Walk<'a> {
             self.observe_force(stretch, index, step);
             // On something solid the box turns with the Earth, and so does frame n: φ stands still.
             if !solid {
-                self.propagate(index, step);
+                self.propagate(index, step, self.pass.noise.hand_scale);
             }
             self.wander(step.end_s, [1.0; 2]);
             self.moved = false;
@@ -114,13 +114,15 @@ impl<'a> Walk<'a> {
             self.state.reset(state::PIVOT, 3, self.pass.noise.pivot_sigma_m);
             self.state.reset(state::SLIDE, 2, self.pass.noise.slide_rad);
         }
+        let in_hand = matches!(stretch.deed, Deed::Move);
+        let scale = if in_hand { self.pass.noise.hand_scale } else { self.pass.noise.turn_scale };
         for index in steps {
             let step = &self.pass.steps.all[index];
             self.wander(step.middle_s, self.pass.noise.walk_in_motion);
             if turn && self.aligned && !self.bridge {
                 self.observe_force(stretch, index, step);
             }
-            self.propagate(index, step);
+            self.propagate(index, step, scale);
             self.wander(step.end_s, self.pass.noise.walk_in_motion);
             if turn {
                 self.slide(step.duration_s);
@@ -147,8 +149,8 @@ impl<'a> Walk<'a> {
         self.state.wander(state::ACCEL_BIAS, 3, accel * self.pass.noise.force_walk * dt_s);
     }
 
-    fn propagate(&mut self, index: usize, step: &Step) {
-        let variance = self.pass.noise.rate_density * self.pass.noise.motion_scale * step.duration_s;
+    fn propagate(&mut self, index: usize, step: &Step, scale: f64) {
+        let variance = self.pass.noise.rate_density * scale * step.duration_s;
         let columns = self.columns;
         self.state.propagate(&step.drive, variance, |c| columns[c].pushed(index).attitude);
     }

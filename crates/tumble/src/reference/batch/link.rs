@@ -99,7 +99,7 @@ pub(super) fn link<'a>(
 fn leg<'a>(setting: &Setting<'a>, unknowns: &mut Unknowns, stretch: &'a Stretch, duration_s: f64) -> Leg<'a> {
     let noise = setting.noise;
     let own = setting.segments.get(stretch.number);
-    let scale = f64::from(noise.motion_scale * own.map_or(1.0, |own| own.rate_scale));
+    let scale = f64::from(noise.moving(&stretch.segment) * own.map_or(1.0, |own| own.rate_scale));
     // A walking bias, taken as straight between two rests, bends by a Brownian bridge of area variance q T³/12.
     let bridge = f64::from(noise.total_bias_walk()) * duration_s * duration_s / 12.0;
     let dt_s = stretch.duration_s / stretch.intervals.len() as f64;

@@ -1,0 +1,155 @@
+//! How noisy motion is: from the level after each move, turns and moves by hand each by themselves.
+//!
+//! The level error after a move about the nominal attitude, over its variance `level + walked + s moved`, is χ²₂, s the factor on the
+//! gyroscope's noise at rest. The two kinds have an s of their own: a put-down rings at 25 to 45 Hz, which at 100 samples a second folds into
+//! the rotation as 0.1 to 0.4 mrad (sim), where a turn beside it has 2 nrad, so that in the median of all of them moves by hand
+//! were taken for as good as turns, and scales were off by 1.4 sigma. s − 1 is the mean of its posterior (`normal.rs`), for a test that must
+//! be sure finds no factor of three in five moves. One move in twenty is disturbed by itself.
+
+use super::Noise;
+use super::normal::mean_variance;
+use super::sums::SegmentNoise;
+
+/// Steps of the grid of `s − 1`, each a factor of two from 1/16 on: up to 260 000.
+const GRID: usize = 23;
+/// The odds that motion is as noisy as rest: a smooth turn is but for one in ten, and every other hand sets a box down with a bump.
+const TURNS_AS_REST: f32 = 9.0;
+const MOVES_AS_REST: f32 = 1.0;
+/// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
+const DISTURBED: f32 = 0.05;
+const DISTURBANCE_LOG: f32 = 9.21;
+
+/// Level error after a move, squared, and what its variance is made of, all rad².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hinge {
+    /// Squared.
+    pub square: f32,
+    /// Of the rests on both sides.
+    pub level: f32,
+    /// By biases that walk.
+    pub walked: f32,
+    /// By the gyroscope as noisy as at rest.
+    pub moved: f32,
+    /// Did a hand carry it? Else it turned on the table.
+    pub in_hand: bool,
+}
+
+impl Hinge {
+    /// χ²₂ if the move is like the others of its kind.
+    pub fn nis(&self, noise: &Noise) -> f32 {
+        self.square / self.variance(if self.in_hand { noise.hand_scale } else { noise.turn_scale })
+    }
+
+    fn variance(&self, scale: f32) -> f32 {
+        self.level + self.walked + scale * self.moved
+    }
+
+    /// Of this square, under a factor.
+    pub fn log_likelihood(&self, scale: f32) -> f32 {
+        let variance = self.variance(scale);
+        let (usual, disturbed) = likelihoods(0.5 * self.square / variance);
+        libm::logf((usual + disturbed) / variance)
+    }
+}
+
+/// Judges all moves of a pass. True if no move's weight changed by more than this share.
+pub fn weigh<const S: usize>(noise: &mut Noise, moves: &mut heapless::Vec<SegmentNoise, S>, share: f32) -> bool {
+    let hinges = || moves.iter().filter_map(|segment| segment.hinge.as_ref());
+    noise.turn_scale = scale(hinges().filter(|hinge| !hinge.in_hand), TURNS_AS_REST);
+    noise.hand_scale = scale(hinges().filter(|hinge| hinge.in_hand), MOVES_AS_REST);
+    let mut steady = true;
+    for segment in moves {
+        let own = segment.hinge.map_or(1.0, |hinge| disturbance(hinge.nis(noise)));
+        steady &= libm::fabsf(own - segment.rate_scale) < share * own;
+        segment.rate_scale = own;
+    }
+    steady
+}
+
+/// Mean of the factor's posterior; `as_rest`: the odds that it is 1.
+fn scale<'a>(hinges: impl Iterator<Item = &'a Hinge> + Clone, as_rest: f32) -> f32 {
+    let (information, count) =
+        hinges.clone().fold((0.0, 0.0), |(sum, count), hinge| (sum + hinge.moved / hinge.variance(1.0), count + 1.0));
+    if information == 0.0 {
+        return 1.0;
+    }
+    let grid = (0..GRID).map(|step| libm::exp2f(step as f32 - 4.0));
+    let log = |_: usize, excess: f32| hinges.clone().map(|hinge| hinge.log_likelihood(1.0 + excess)).sum();
+    1.0 + mean_variance(grid, count / information, as_rest, log)
+}
+
+/// Of a move as usual and of a disturbed one, its variance S times as large, ln S uniform up to ln 1e4, both over the density at zero: with
+/// `a = χ²/2` they are `e^−a` and, over u = 1/S, `∫ e^−au du = (1 − e^−a)/a`.
+fn likelihoods(a: f32) -> (f32, f32) {
+    let like = libm::expf(-a);
+    // Below a tenth of a sigma both integrals are constants.
+    let disturbed = if a > 0.1 { (1.0 - like) / a } else { 1.0 };
+    ((1.0 - DISTURBED) * like, DISTURBED / DISTURBANCE_LOG * disturbed)
+}
+
+/// By how much more variance than other moves' one is to be taken, whose level error is `nis`. The mean of u, by which the move's
+/// information is to be multiplied, has `∫ u e^−au du = (1 − (1 + a) e^−a)/a²`. What lies within χ²₂ is left alone, what lies far out
+/// gets a variance of χ²/2.
+fn disturbance(nis: f32) -> f32 {
+    let a = 0.5 * nis;
+    if a <= 0.1 {
+        return 1.0;
+    }
+    let (usual, disturbed) = likelihoods(a);
+    let information = DISTURBED / DISTURBANCE_LOG * (1.0 - (1.0 + a) * libm::expf(-a)) / (a * a);
+    (usual + disturbed) / (usual + information)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::setup::{BoxFaces, TurnStops};
+    use crate::tape::Tape;
+
+    /// Squares of χ²₂ at the middles of n equal shares, times the variance under a factor `scale`.
+    fn hinges(count: usize, scale: f32, in_hand: bool) -> impl Iterator<Item = SegmentNoise> {
+        let (level, moved) = (1e-8, 4e-8);
+        (0..count).map(move |k| {
+            let chi = -2.0 * libm::logf(1.0 - (k as f32 + 0.5) / count as f32);
+            let square = chi * (level + scale * moved);
+            let hinge = Some(Hinge { square, level, walked: 0.0, moved, in_hand });
+            SegmentNoise { force_scale: 1.0, rate_scale: 1.0, hinge }
+        })
+    }
+
+    fn weighed(moves: impl Iterator<Item = SegmentNoise>) -> (Noise, heapless::Vec<SegmentNoise, 32>) {
+        let mut noise = Noise::from_rests(&Tape::<4, 4>::new(), TurnStops::ByHand, BoxFaces::Unknown);
+        let mut moves = moves.collect();
+        assert!(weigh(&mut noise, &mut moves, 1.0));
+        (noise, moves)
+    }
+
+    #[test]
+    fn moves_by_hand_are_told_from_turns() {
+        let (noise, _) = weighed(hinges(12, 1.0, false).chain(hinges(6, 4.0, true)));
+        assert!(noise.turn_scale < 1.1 && (2.5..6.0).contains(&noise.hand_scale), "{noise:?}");
+        let (noise, _) = weighed(hinges(12, 1.0, false).chain(hinges(6, 1.0, true)));
+        assert!(noise.turn_scale < 1.1 && noise.hand_scale < 1.2, "{noise:?}");
+        let (noise, _) = weighed(hinges(17, 200.0, true));
+        assert!((150.0..300.0).contains(&noise.hand_scale) && noise.turn_scale == 1.0, "{noise:?}");
+    }
+
+    #[test]
+    fn one_bad_move_is_no_noise_of_all() {
+        let mut bad = hinges(1, 1.0, true).map(|mut segment| {
+            segment.hinge.as_mut().expect("one").square = 1e-4;
+            segment
+        });
+        let (noise, moves) = weighed(hinges(6, 1.0, true).chain(core::iter::from_fn(|| bad.next())));
+        assert!(noise.hand_scale < 1.3, "{noise:?}");
+        assert!(moves[6].rate_scale > 500.0 && moves[..6].iter().all(|segment| segment.rate_scale < 1.3));
+    }
+
+    #[test]
+    fn a_distant_move_loses_its_weight_and_a_usual_one_keeps_it() {
+        let table = [(2.0, 1.0 / 0.99), (16.0, 2.5), (1e4, 5e3)];
+        for (nis, expected) in table {
+            assert!((disturbance(nis) / expected - 1.0).abs() < 0.1, "{nis}: {}", disturbance(nis));
+        }
+    }
+}
