@@ -89,7 +89,7 @@ fn moves_that_end_at_random_are_something_unknown() {
     let diagnosis = ask(&recording, &[]).diagnosis;
     assert_eq!(diagnosis.verdict, Verdict::UnknownEffect, "{:?} {:?}", diagnosis.effects, diagnosis.reasons);
     let unknown = diagnosis.unknown.as_ref().expect("something");
-    assert!(unknown.correlates_with.iter().any(|shape| shape.contains("from rest to rest")), "{unknown:?}");
+    assert!(unknown.correlates_with.iter().any(|shape| shape.contains("whose ends scatter")), "{unknown:?}");
 }
 
 #[test]
@@ -119,7 +119,8 @@ fn an_effect_of_the_rate_is_taken_out_of_a_further_recording_too() {
     assert_eq!(diagnosis.effects[0].id, "gyro_scale_cubic", "{diagnosis:?}");
     try_on(&mut diagnosis, &recording, "again.csv", &Options { seed: 1, ..Options::default() });
     let other = &diagnosis.effects[0].other_recordings[0];
-    assert!(other.after < 0.6 * other.before, "{other:?}");
+    // By as much the noise of moves was blamed before, so that the residuals' ratio says less than the odds.
+    assert!(other.after < 0.9 * other.before && other.gain > 50.0, "{other:?}");
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! What a recording could have shown.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::diagnosis::Limit;
 use super::gates::chance::shift_seen;
 use super::judge::BESIDE_GATES;
-use super::search::bench::{Bench, Candidate, HEALTHY, WANDERING, with_walks};
+use super::search::bench::{Bench, Candidate, HEALTHY, WANDERING, WIDENINGS, with_walks};
 use super::search::ledger::{Ledger, Term};
 use super::search::select::Selection;
 use super::twin::noise::walk_floor;
@@ -122,19 +122,49 @@ fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f
     for placed in &candidate.variants {
         let columns: Vec<usize> = placed.columns.clone().collect();
         let information = information(ledger, asked, &columns);
-        let widths = DVector::from_fn(columns.len(), |i, _| placed.parameters[i].width);
-        let prior = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-            information[(i, j)] * widths[i] * widths[j] + if i == j { 1.0 } else { 0.0 }
-        });
-        let Some(factor) = prior.cholesky() else { continue };
-        let occam: f64 = factor.l_dirty().diagonal().iter().map(|v| v.ln()).sum();
-        let price = asked.needed + occam + (candidate.variants.len() as f64).ln();
+        let hypotheses = (candidate.variants.len() * WIDENINGS.len()) as f64;
+        let priors: Vec<Prior> = WIDENINGS
+            .into_iter()
+            .filter_map(|widening| {
+                let widths = placed.parameters.iter().map(|parameter| widening * parameter.width);
+                Prior::new(&information, DVector::from_iterator(columns.len(), widths))
+            })
+            .collect();
         for (i, parameter) in placed.parameters.iter().enumerate().filter(|(i, _)| information[(*i, *i)] > 0.0) {
-            let sigmas = shift_seen(2.0 * price, columns.len() as f64).sqrt();
-            limits.push((sigmas / information[(i, i)].sqrt(), parameter.width, parameter.unit));
+            let dof = columns.len() as f64;
+            let square = |prior: &Prior| {
+                shift_seen(2.0 * (asked.needed + hypotheses.ln() + prior.occam), dof) / prior.kept(&information, i)
+            };
+            let least = priors.iter().map(square).fold(f64::INFINITY, f64::min);
+            limits.push((least.sqrt() / information[(i, i)].sqrt(), parameter.width, parameter.unit));
         }
     }
     limits
+}
+
+/// One width of the mixture.
+struct Prior {
+    widths: DVector<f64>,
+    factor: Cholesky<f64, Dyn>,
+    /// `½ ln det(I + W I W)`.
+    occam: f64,
+}
+
+impl Prior {
+    fn new(information: &DMatrix<f64>, widths: DVector<f64>) -> Option<Self> {
+        let scaled = DMatrix::from_fn(widths.len(), widths.len(), |i, j| {
+            information[(i, j)] * widths[i] * widths[j] + if i == j { 1.0 } else { 0.0 }
+        });
+        let factor = scaled.cholesky()?;
+        let occam = factor.l_dirty().diagonal().iter().map(|v| v.ln()).sum();
+        Some(Self { widths, factor, occam })
+    }
+
+    /// What is left of χ² where one number is what it is and all are shrunk.
+    fn kept(&self, information: &DMatrix<f64>, one: usize) -> f64 {
+        let pull = information.column(one).component_mul(&self.widths);
+        pull.dot(&self.factor.solve(&pull)) / information[(one, one)]
+    }
 }
 
 /// The walk that shows, in its unit: a thousandth of a step's. Every level is as likely before.
