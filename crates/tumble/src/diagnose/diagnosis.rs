@@ -241,6 +241,9 @@ pub struct Limit {
     pub limit: f64,
     /// Of the limit.
     pub unit: String,
+    /// The limit over the Fisher bound of that number, the effect's other numbers free, under the most noise that the null may choose; none
+    /// of what gates find and of walks.
+    pub fisher_sigmas: Option<f64>,
     /// Could it have shown at a size that occurs?
     pub testable: bool,
     /// Why not, or what it is mistaken for.

@@ -81,6 +81,7 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
         id: id.clone(),
         limit: f64::MAX,
         unit: unit.into(),
+        fisher_sigmas: None,
         testable: false,
         why: why.into(),
     };
@@ -94,14 +95,16 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
         // What is more than healthy by the first level that counts, or what shows.
         let least = (walk_floor(gyro) * 4.0 * HEALTHY[HEALTHY.len() - 1]).sqrt() / unit_si;
         return match walk(asked, ledger, gyro, least) {
-            Some(limit) => Limit { id, limit, unit: unit.into(), testable: true, why: String::new() },
+            Some(limit) => Limit { limit, testable: true, ..none("", unit) },
             None => none("no walk would show: too few rests, or too near in time", unit),
         };
     }
     // The median over parameters and variants: axes and, of what begins at some time, times.
     let mut limits = limits_alone(candidate, asked, ledger);
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (Some(&(limit, width, unit)), Some(&(worst, ..))) = (limits.get(limits.len() / 2), limits.last()) else {
+    limits.sort_by(|a, b| a.limit.total_cmp(&b.limit));
+    let (Some(&Alone { limit, width, unit, sigmas }), Some(&Alone { limit: worst, .. })) =
+        (limits.get(limits.len() / 2), limits.last())
+    else {
         return none("nothing in this recording depends on it", "");
     };
     let testable = limit < 10.0 * width;
@@ -113,11 +116,21 @@ fn limit(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Limit {
         }
         () => String::new(),
     };
-    Limit { id, limit, unit: unit.into(), testable, why }
+    Limit { id, limit, unit: unit.into(), fisher_sigmas: Some(sigmas), testable, why }
 }
 
-/// Of each parameter of each variant alone, the others zero, at the price of them all: limit, prior width and unit.
-fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f64, f64, &'static str)> {
+/// Of one parameter.
+struct Alone {
+    limit: f64,
+    /// Its prior's.
+    width: f64,
+    unit: &'static str,
+    /// The limit over its Fisher bound.
+    sigmas: f64,
+}
+
+/// Of each parameter of each variant alone, the others zero, at the price of them all.
+fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<Alone> {
     let mut limits = Vec::new();
     for placed in &candidate.variants {
         let columns: Vec<usize> = placed.columns.clone().collect();
@@ -136,7 +149,11 @@ fn limits_alone(candidate: &Candidate, asked: &Asked, ledger: &Ledger) -> Vec<(f
                 shift_seen(2.0 * (asked.needed + hypotheses.ln() + prior.occam), dof) / prior.kept(&information, i)
             };
             let least = priors.iter().map(square).fold(f64::INFINITY, f64::min);
-            limits.push((least.sqrt() / information[(i, i)].sqrt(), parameter.width, parameter.unit));
+            let limit = (least / information[(i, i)]).sqrt();
+            // Of numbers that go together without end the bound is that of the one alone.
+            let bound = information.clone().try_inverse().map(|covariance| covariance[(i, i)]).filter(|v| *v > 0.0);
+            let sigmas = limit / bound.unwrap_or(1.0 / information[(i, i)]).sqrt();
+            limits.push(Alone { limit, width: parameter.width, unit: parameter.unit, sigmas });
         }
     }
     limits
@@ -201,6 +218,7 @@ mod tests {
             id: "incomplete_turn".into(),
             limit,
             unit: "deg".into(),
+            fisher_sigmas: None,
             testable,
             why: String::new(),
         };

@@ -53,10 +53,17 @@ pub fn value(name: &str, value: f64, sigma: f64, unit: &str) -> Value {
 /// A limit of a gate that can fire here.
 pub fn limit(card: &Card, limit: f64, unit: &str, why: &str) -> Option<Limit> {
     let (limit, testable) = if limit.is_finite() { (limit, true) } else { (0.0, false) };
-    Some(Limit { id: card.id.into(), limit, unit: unit.into(), testable, why: why.into() })
+    Some(Limit { id: card.id.into(), limit, unit: unit.into(), fisher_sigmas: None, testable, why: why.into() })
 }
 
 /// A limit of a gate that cannot.
 pub fn untestable(card: &Card, unit: &str, why: &str) -> Option<Limit> {
-    Some(Limit { id: card.id.into(), limit: 0.0, unit: unit.into(), testable: false, why: why.into() })
+    Some(Limit {
+        id: card.id.into(),
+        limit: 0.0,
+        unit: unit.into(),
+        fisher_sigmas: None,
+        testable: false,
+        why: why.into(),
+    })
 }

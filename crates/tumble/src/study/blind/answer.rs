@@ -75,6 +75,9 @@ pub struct Limit {
     /// Of the limit.
     #[serde(default)]
     pub unit: String,
+    /// Over the Fisher bound.
+    #[serde(default)]
+    pub fisher_sigmas: Option<f64>,
     /// Could it have shown?
     #[serde(default)]
     pub testable: bool,

@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     fn twin(id: &str, limit: f64, unit: &str) -> Answer {
-        let limit = Limit { id: id.into(), limit: Some(limit), unit: unit.into(), testable: true, why: String::new() };
+        let limit = Limit { id: id.into(), limit: Some(limit), unit: unit.into(), testable: true, ..Limit::default() };
         Answer { detection_limits: vec![limit], ..Answer::default() }
     }
 

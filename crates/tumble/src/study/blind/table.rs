@@ -78,19 +78,21 @@ fn effects(to: &mut String, report: &Report) {
     EFFECTS.iter().for_each(|(word, _)| {
         let _ = write!(to, "{word:>7}");
     });
-    let _ = writeln!(to, "{:>11}{:>12}{:>7}{:>7}{:>9}{:>6}", "size", "2 sigma", "bias", "rms", "limit/s", "names");
+    let (s, fisher) = ("limit/s", "limit/F");
+    let _ = writeln!(to, "{:>11}{:>12}{:>7}{:>7}{s:>9}{fisher:>9}{:>6}", "size", "2 sigma", "bias", "rms", "names");
     for row in &report.effects {
         counts(to, row, &EFFECTS);
         let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.1}"));
         let covered = format!("{}/{}", row.covered.hits, row.covered.count);
         let _ = writeln!(
             to,
-            "{:>11.4}{:>12}{:>7}{:>7}{:>9}{:>6}{}",
+            "{:>11.4}{:>12}{:>7}{:>7}{:>9}{:>9}{:>6}{}",
             row.magnitude,
             covered,
             number(row.bias_sigmas),
             number(row.rms_sigmas),
             number(row.limit_sigmas),
+            number(row.limit_fisher),
             if row.widest_tie == 0 { ".".to_owned() } else { row.widest_tie.to_string() },
             row.otherwise.as_ref().map_or(String::new(), |by| format!("  ({by})"))
         );

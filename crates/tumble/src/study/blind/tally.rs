@@ -76,8 +76,10 @@ pub struct Row {
     pub rms_sigmas: Option<f64>,
     /// Why no numbers were compared.
     pub not_compared: Option<&'static str>,
-    /// Median detection limit over the median sigma of its parameters.
+    /// Median detection limit over the median sigma of its parameters, which knows the noise that the search chose.
     pub limit_sigmas: Option<f64>,
+    /// The same over the Fisher bound under the most noise that the null may choose, as the diagnoses state it.
+    pub limit_fisher: Option<f64>,
     /// Names in the widest tie that was counted as correct; 0 without any.
     pub widest_tie: usize,
 }
@@ -206,6 +208,7 @@ fn row(id: String, scored: &[&Scored]) -> Row {
         rms_sigmas: mean(&|sigmas| sigmas * sigmas).map(f64::sqrt),
         not_compared: id.split(" + ").find_map(mapping::why_not),
         limit_sigmas: limit_sigmas(scored),
+        limit_fisher: limit_fisher(&id, scored),
         widest_tie: widest_tie(scored),
         outcomes,
         id,
@@ -221,6 +224,11 @@ fn limit_sigmas(scored: &[&Scored]) -> Option<f64> {
         Some(size.stated? / sigma)
     };
     median(scored.iter().filter_map(ratio).collect())
+}
+
+fn limit_fisher(id: &str, scored: &[&Scored]) -> Option<f64> {
+    let limits = scored.iter().filter_map(|one| one.asked.answer.as_ref()).flat_map(|answer| &answer.detection_limits);
+    median(limits.filter(|limit| limit.id == id).filter_map(|limit| limit.fisher_sigmas).collect())
 }
 
 /// The most names that a correct tie had: one of eighteen is no answer.
