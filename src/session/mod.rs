@@ -38,7 +38,7 @@ const RANGES: Ranges = Ranges::WIDEST;
 /// Records of 14 bytes: 12 a second while it moves, 2 at rest. A double scheme by a slow hand takes 2000.
 const RECORDS: usize = 3072;
 /// Rests, turns and moves. A double scheme without a mistake has 40.
-const SEGMENTS: usize = 160;
+const SEGMENTS: usize = 144;
 
 /// The whole estimate, what it is made from and what it is made in, takes less than half of the memory.
 const _: () = assert!(size_of::<Tape<RECORDS, SEGMENTS>>() + size_of::<Estimator<SEGMENTS>>() <= 64 * 1024);

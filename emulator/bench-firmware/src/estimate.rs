@@ -14,7 +14,7 @@ use crate::bench_end;
 
 /// More than the firmware's 3072, for a session of 400 s.
 const RECORDS: usize = 4096;
-const SEGMENTS: usize = 160;
+const SEGMENTS: usize = 144;
 /// Words of a chunk; `emulator/src/bin/bench/feed.rs` has the same.
 const CHUNK: usize = 256;
 

@@ -1,7 +1,7 @@
 //! How noisy motion is: from the level after each move, turns and moves by hand each by themselves.
 //!
-//! The level error after a move about the nominal attitude, over its variance `level + walked + s moved`, is χ²₂, s the factor on the
-//! gyroscope's noise at rest. The two kinds have an s of their own: a put-down rings at 25 to 45 Hz, which at 100 samples a second folds into
+//! The level error after a move about the nominal attitude, squared and over its variance, is χ²₂. In units of what the gyroscope as noisy as at
+//! rest makes of it, that variance is `level + walked + s`. The two kinds have an s of their own: a put-down rings at 25 to 45 Hz, which at 100 samples a second folds into
 //! the rotation as 0.1 to 0.4 mrad (sim), where a turn beside it has 2 nrad, so that in the median of all of them moves by hand
 //! were taken for as good as turns, and scales were off by 1.4 sigma. s − 1 is the mean of its posterior (`normal.rs`), for a test that must
 //! be sure finds no factor of three in five moves. One move in twenty is disturbed by itself.
@@ -19,7 +19,7 @@ const MOVES_AS_REST: f32 = 1.0;
 const DISTURBED: f32 = 0.05;
 const DISTURBANCE_LOG: f32 = 9.21;
 
-/// Level error after a move, squared, and what its variance is made of, all rad².
+/// Level error after a move, squared, and what its variance is made of, all over what the gyroscope as noisy as at rest makes of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hinge {
     /// Squared.
@@ -28,8 +28,6 @@ pub struct Hinge {
     pub level: f32,
     /// By biases that walk.
     pub walked: f32,
-    /// By the gyroscope as noisy as at rest.
-    pub moved: f32,
     /// Did a hand carry it? Else it turned on the table.
     pub in_hand: bool,
 }
@@ -41,7 +39,7 @@ impl Hinge {
     }
 
     fn variance(&self, scale: f32) -> f32 {
-        self.level + self.walked + scale * self.moved
+        self.level + self.walked + scale
     }
 
     /// Of this square, under a factor.
@@ -69,7 +67,7 @@ pub fn weigh<const S: usize>(noise: &mut Noise, moves: &mut heapless::Vec<Segmen
 /// Mean of the factor's posterior; `as_rest`: the odds that it is 1.
 fn scale<'a>(hinges: impl Iterator<Item = &'a Hinge> + Clone, as_rest: f32) -> f32 {
     let (information, count) =
-        hinges.clone().fold((0.0, 0.0), |(sum, count), hinge| (sum + hinge.moved / hinge.variance(1.0), count + 1.0));
+        hinges.clone().fold((0.0, 0.0), |(sum, count), hinge| (sum + 1.0 / hinge.variance(1.0), count + 1.0));
     if information == 0.0 {
         return 1.0;
     }
@@ -108,11 +106,10 @@ mod tests {
 
     /// Squares of χ²₂ at the middles of n equal shares, times the variance under a factor `scale`.
     fn hinges(count: usize, scale: f32, in_hand: bool) -> impl Iterator<Item = SegmentNoise> {
-        let (level, moved) = (1e-8, 4e-8);
+        let level = 0.25;
         (0..count).map(move |k| {
             let chi = -2.0 * libm::logf(1.0 - (k as f32 + 0.5) / count as f32);
-            let square = chi * (level + scale * moved);
-            let hinge = Some(Hinge { square, level, walked: 0.0, moved, in_hand });
+            let hinge = Some(Hinge { square: chi * (level + scale), level, walked: 0.0, in_hand });
             SegmentNoise { force_scale: 1.0, rate_scale: 1.0, hinge }
         })
     }
@@ -137,7 +134,7 @@ mod tests {
     #[test]
     fn one_bad_move_is_no_noise_of_all() {
         let mut bad = hinges(1, 1.0, true).map(|mut segment| {
-            segment.hinge.as_mut().expect("one").square = 1e-4;
+            segment.hinge.as_mut().expect("one").square = 2500.0;
             segment
         });
         let (noise, moves) = weighed(hinges(6, 1.0, true).chain(core::iter::from_fn(|| bad.next())));

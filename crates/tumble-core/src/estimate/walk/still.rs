@@ -126,8 +126,8 @@ impl<const S: usize> Walk<S> {
             let walked = noise.total_bias_walk() * self.pass.session_s / 6.0 * move_s * move_s
                 + noise.force_walk * (move_s + duration_s) / (self.gravity * self.gravity);
             let moved = noise.rate_density * move_s;
-            let (square, level, in_hand) = (turn.norm_squared(), before + variance, self.pass.in_hand);
-            self.noise[hinge].hinge = Some(Hinge { square, level, walked, moved, in_hand });
+            let [square, level, walked] = [turn.norm_squared(), before + variance, walked].map(|part| part / moved);
+            self.noise[hinge].hinge = Some(Hinge { square, level, walked, in_hand: self.pass.in_hand });
         }
     }
 

@@ -70,15 +70,9 @@ mod tests {
     /// So many moves of a noise `times` that of rest, squared; rests on both sides are half as noisy as a move.
     fn moves(count: usize, times: f64, seed: u64) -> Vec<Hinge> {
         let mut rng = Rng::new(seed, Purpose::Box);
-        let (level, moved) = (2e-8, 4e-8);
-        let square = |draw: nalgebra::Vector3<f64>| (draw.x * draw.x + draw.y * draw.y) * (level + times * moved);
-        let hinge = |square: f64| Hinge {
-            square: square as f32,
-            level: level as f32,
-            walked: 0.0,
-            moved: moved as f32,
-            in_hand: true,
-        };
+        let level = 0.5;
+        let square = |draw: nalgebra::Vector3<f64>| (draw.x * draw.x + draw.y * draw.y) * (level + times);
+        let hinge = |square: f64| Hinge { square: square as f32, level: level as f32, walked: 0.0, in_hand: true };
         (0..count).map(|_| hinge(square(rng.normal3()))).collect()
     }
 
