@@ -70,8 +70,8 @@ pub struct Made {
 pub enum PlanError {
     /// No such imperfection.
     #[error(
-        "'{0}' is no imperfection: bias_drift, clock, wobble, lever, crooked_box, temperature_ramp, tilt, by_hand, slide or all, \
-         with =SIZE if the usual size is not meant"
+        "'{0}' is no imperfection: {words} or all, with =SIZE if the usual size is not meant",
+        words = tumble_sim::scheme::Imperfection::WORDS
     )]
     Imperfection(String),
     /// A setting out of its range.

@@ -68,6 +68,7 @@ fn diagnosis(verdict: Verdict) -> Diagnosis {
         id: format!("an_effect_of_number_{k}"),
         limit: if k.is_multiple_of(2) { 0.01 } else { f64::MAX },
         unit: "dps/g".into(),
+        fisher_sigmas: k.is_multiple_of(2).then_some(6.5),
         testable: k.is_multiple_of(2),
         why: if k.is_multiple_of(2) { String::new() } else { "the temperature did not change & so on".into() },
     };

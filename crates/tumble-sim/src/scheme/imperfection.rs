@@ -1,9 +1,11 @@
 //! What a real table, box and hand do that the nominal world leaves out.
 
+use super::realistic::{ACCEL_INSTABILITY_G, GYRO_INSTABILITY_EARTH_RATES};
 use super::{Clock, Scheme, SchemeConfig, Stamps};
 use crate::motion::{BoxShape, Hands};
 use crate::rng::{Purpose, Rng};
 use crate::sensor::Thermal;
+use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
 use nalgebra::Vector3;
 
 /// One imperfection with its size.
@@ -31,6 +33,10 @@ pub enum Imperfection {
     SoftTable(f64),
     /// Turns end against a fence, each stop uniform within this of it, degrees.
     Fence(f64),
+    /// So many samples a second, Hz; put-downs ring as before.
+    Rate(f64),
+    /// 1/f noise of both biases, in units of what Allan plots of such sensors show (10 °/h and 40 µg).
+    Flicker(f64),
 }
 
 impl Imperfection {
@@ -45,9 +51,11 @@ impl Imperfection {
         Self::ByHand(2.0),
     ];
 
-    /// Of its word, with its usual size if none is given: `bias_drift` (°/s), `clock` (fraction), `wobble` (°), `lever` (m),
-    /// `crooked_box` (°), `temperature_ramp` (°C), `tilt` (°), `by_hand` (°), `slide` (m),
-    /// `soft_table` (°), `fence` (°).
+    /// All words, for a person.
+    pub const WORDS: &str = "bias_drift (°/s), clock (fraction), wobble (°), lever (m), crooked_box (°), temperature_ramp (°C), tilt (°), \
+                             by_hand (°), slide (m), soft_table (°), fence (°), rate (Hz), flicker (times the usual)";
+
+    /// Of its word, with its usual size if none is given.
     pub fn parse(word: &str, size: Option<f64>) -> Option<Self> {
         let or = |usual: f64| size.unwrap_or(usual);
         Some(match word {
@@ -62,6 +70,8 @@ impl Imperfection {
             "slide" => Self::Slide(or(0.01)),
             "soft_table" => Self::SoftTable(or(0.1)),
             "fence" => Self::Fence(or(0.1)),
+            "rate" => Self::Rate(or(100.0)),
+            "flicker" => Self::Flicker(or(1.0)),
             _ => return None,
         })
     }
@@ -98,6 +108,12 @@ impl SchemeConfig {
             Imperfection::SoftTable(deg) => motion.table.soft_deg = deg,
             Imperfection::Fence(half_width_deg) => {
                 motion.hands.stops = crate::motion::Stops::Fenced { half_width_deg };
+            }
+            Imperfection::Rate(hz) => self.world.sensor.rate_hz = hz,
+            Imperfection::Flicker(times) => {
+                let drift = &mut self.world.sensor.drift;
+                drift.gyro.instability = times * GYRO_INSTABILITY_EARTH_RATES * EARTH_RATE_RAD_S;
+                drift.accel.instability = times * ACCEL_INSTABILITY_G * STANDARD_GRAVITY_MPS2;
             }
             Imperfection::ByHand(closure_sigma_deg) => {
                 motion.hands.overshoot_deg = Hands::by_hand().overshoot_deg;

@@ -8,9 +8,9 @@ use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
 use nalgebra::Vector3;
 
 /// Bias instability of the gyro, in Earth rates: 10 °/h, as Allan plots of MPU-9250 boards show.
-const GYRO_INSTABILITY_EARTH_RATES: f64 = 10.0 / 15.041;
+pub(super) const GYRO_INSTABILITY_EARTH_RATES: f64 = 10.0 / 15.041;
 /// Bias instability of the accelerometer, g: 40 µg, from the same plots.
-const ACCEL_INSTABILITY_G: f64 = 40e-6;
+pub(super) const ACCEL_INSTABILITY_G: f64 = 40e-6;
 /// Of the sheet's temperature coefficients: what is left of them over the half degree of a session is below 0.2 mdps.
 const THERMAL_SHARE: f64 = 0.01;
 

@@ -48,9 +48,9 @@ pub(super) struct Arguments {
     /// Amplitude by which the axis of a turn wobbles, degrees
     #[arg(long, value_name = "DEG")]
     wobble_deg: Option<f64>,
-    /// Further imperfection with its size, or all of them: bias_drift (°/s), clock (fraction), wobble (°), lever (m),
-    /// crooked_box (°), temperature_ramp (°C), tilt (°), by_hand (°), slide (m), all
-    #[arg(long = "imperfection", value_name = "NAME[=SIZE]")]
+    #[arg(long = "imperfection", value_name = "NAME[=SIZE]", help = format!(
+        "Further imperfection with its size, or all of them: {}, all", tumble_sim::scheme::Imperfection::WORDS
+    ))]
     imperfections: Vec<String>,
     /// Round to the sensor's counts and clip at the ends of its ranges
     #[arg(long)]

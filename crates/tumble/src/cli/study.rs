@@ -114,7 +114,8 @@ fn imperfection(text: &str) -> Result<Imperfection, String> {
     let (word, size) = text.split_once('=').map_or((text, None), |(word, size)| (word, Some(size)));
     let size =
         size.map(|size| size.parse::<f64>().map_err(|error| format!("`{size}` is no size: {error}"))).transpose()?;
-    Imperfection::parse(word, size).ok_or_else(|| format!("`{word}` is no imperfection"))
+    Imperfection::parse(word, size)
+        .ok_or_else(|| format!("`{word}` is no imperfection that a study knows: {}", Imperfection::WORDS))
 }
 
 fn limits(arguments: &LimitsArguments) -> Result<(), Refusal> {
