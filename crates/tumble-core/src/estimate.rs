@@ -7,6 +7,7 @@ pub mod device;
 pub mod facets;
 pub mod filter;
 pub mod group;
+pub mod hinge;
 pub mod judge;
 pub mod likelihood;
 pub mod model;

@@ -121,6 +121,10 @@ impl FaceSet {
     }
 }
 
+/// The order of asking when the person has no preference: X, Y, −X, Z, −Y, −Z. No axis follows itself, so that what grows
+/// with time (drift) is not mistaken for what changes with the face; it separates the most effects.
+pub const ASKING_ORDER: [Face; 6] = [Face::PlusX, Face::PlusY, Face::MinusX, Face::PlusZ, Face::MinusY, Face::MinusZ];
+
 #[cfg(test)]
 mod tests {
     use super::*;

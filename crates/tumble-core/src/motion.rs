@@ -3,6 +3,7 @@
 pub mod block;
 pub mod grain;
 pub mod path;
+pub mod record;
 pub mod segmenter;
 pub mod stillness;
 

@@ -22,7 +22,7 @@ use crate::verify::{PoseCheck, Verification};
 
 pub use crate::setup::{BoxFaces, Scheme, Setup, TurnStops};
 pub use collect::{STILL_S, TURN_REST_S};
-pub use coverage::{ASKING_ORDER, Coverage, Direction};
+pub use coverage::{Coverage, Direction};
 
 use collect::Collect;
 use track::Track;

@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use crate::face::Face;
 use crate::motion::grain::Grain;
+pub use crate::motion::record::Record;
 
 /// One unit of rotation, rad: ±32767 units reach ±1 rad, which a record of one 62.5 Hz sample fills at 3600 °/s.
 pub const ANGLE_UNIT_RAD: f32 = 1.0 / 32768.0;
@@ -17,17 +18,6 @@ pub const ANGLE_UNIT_RAD: f32 = 1.0 / 32768.0;
 pub const FORCE_UNIT_MPS2: f32 = 1.0 / 2048.0;
 /// One unit of time, µs: 65 535 units reach 0.65 s.
 const TIME_UNIT_US: f32 = 10.0;
-
-/// An interval's sums.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Record {
-    /// Length, s.
-    pub dt_s: f32,
-    /// Rotation vector by the raw gyroscope, rad, sensor axes; coning included, of rates less the resting rate.
-    pub rotation_rad: Vector3<f32>,
-    /// Mean raw specific force, m/s², sensor axes.
-    pub specific_force_mps2: Vector3<f32>,
-}
 
 #[derive(Clone, Copy, Debug, Default)]
 struct Packed {

@@ -1,12 +1,13 @@
 //! How noisy motion is: from the level after each move, turns and moves by hand each by themselves.
 //!
 //! The level error after a move about the nominal attitude, squared and over its variance, is χ²₂. In units of what the gyroscope as noisy as at
-//! rest makes of it, that variance is `level + walked + s`. The two kinds have an s of their own: a put-down rings at 25 to 45 Hz, which at 100 samples a second folds into
-//! the rotation as 0.1 to 0.4 mrad (sim), where a turn beside it has 2 nrad, so that in the median of all of them moves by hand
-//! were taken for as good as turns, and scales were off by 1.4 sigma. s − 1 is the mean of its posterior (`normal.rs`), for a test that must
-//! be sure finds no factor of three in five moves. One move in twenty is disturbed by itself.
+//! rest makes of it, that variance is `level + walked + s` (`hinge.rs`). The two kinds have an s of their own: a put-down rings at 25 to 45 Hz,
+//! which at 100 samples a second folds into the rotation as 0.1 to 0.4 mrad (sim), where a turn beside it has 2 nrad; in one median of all, five
+//! moves by hand passed for as good as twelve turns. s − 1 is the mean of its posterior (`normal.rs`), for a test that must be sure finds
+//! no factor of three in five moves. One move in twenty is disturbed by itself.
 
 use super::Noise;
+use super::hinge::{Hinge, disturbance};
 use super::normal::mean_variance;
 use super::sums::SegmentNoise;
 
@@ -15,40 +16,6 @@ const GRID: usize = 23;
 /// The odds that motion is as noisy as rest: a smooth turn is but for one in ten, and every other hand sets a box down with a bump.
 const TURNS_AS_REST: f32 = 9.0;
 const MOVES_AS_REST: f32 = 1.0;
-/// Share of moves that are taken to be disturbed, and the logarithm of the most by which their variance may be larger (1e4).
-const DISTURBED: f32 = 0.05;
-const DISTURBANCE_LOG: f32 = 9.21;
-
-/// Level error after a move, squared, and what its variance is made of, all over what the gyroscope as noisy as at rest makes of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hinge {
-    /// Squared.
-    pub square: f32,
-    /// Of the rests on both sides.
-    pub level: f32,
-    /// By biases that walk.
-    pub walked: f32,
-    /// Did a hand carry it? Else it turned on the table.
-    pub in_hand: bool,
-}
-
-impl Hinge {
-    /// χ²₂ if the move is like the others of its kind.
-    pub fn nis(&self, noise: &Noise) -> f32 {
-        self.square / self.variance(if self.in_hand { noise.hand_scale } else { noise.turn_scale })
-    }
-
-    fn variance(&self, scale: f32) -> f32 {
-        self.level + self.walked + scale
-    }
-
-    /// Of this square, under a factor.
-    pub fn log_likelihood(&self, scale: f32) -> f32 {
-        let variance = self.variance(scale);
-        let (usual, disturbed) = likelihoods(0.5 * self.square / variance);
-        libm::logf((usual + disturbed) / variance)
-    }
-}
 
 /// Judges all moves of a pass. True if no move's weight changed by more than this share.
 pub fn weigh<const S: usize>(noise: &mut Noise, moves: &mut heapless::Vec<SegmentNoise, S>, share: f32) -> bool {
@@ -74,28 +41,6 @@ fn scale<'a>(hinges: impl Iterator<Item = &'a Hinge> + Clone, as_rest: f32) -> f
     let grid = (0..GRID).map(|step| libm::exp2f(step as f32 - 4.0));
     let log = |_: usize, excess: f32| hinges.clone().map(|hinge| hinge.log_likelihood(1.0 + excess)).sum();
     1.0 + mean_variance(grid, count / information, as_rest, log)
-}
-
-/// Of a move as usual and of a disturbed one, its variance S times as large, ln S uniform up to ln 1e4, both over the density at zero: with
-/// `a = χ²/2` they are `e^−a` and, over u = 1/S, `∫ e^−au du = (1 − e^−a)/a`.
-fn likelihoods(a: f32) -> (f32, f32) {
-    let like = libm::expf(-a);
-    // Below a tenth of a sigma both integrals are constants.
-    let disturbed = if a > 0.1 { (1.0 - like) / a } else { 1.0 };
-    ((1.0 - DISTURBED) * like, DISTURBED / DISTURBANCE_LOG * disturbed)
-}
-
-/// By how much more variance than other moves' one is to be taken, whose level error is `nis`. The mean of u, by which the move's
-/// information is to be multiplied, has `∫ u e^−au du = (1 − (1 + a) e^−a)/a²`. What lies within χ²₂ is left alone, what lies far out
-/// gets a variance of χ²/2.
-fn disturbance(nis: f32) -> f32 {
-    let a = 0.5 * nis;
-    if a <= 0.1 {
-        return 1.0;
-    }
-    let (usual, disturbed) = likelihoods(a);
-    let information = DISTURBED / DISTURBANCE_LOG * (1.0 - (1.0 + a) * libm::expf(-a)) / (a * a);
-    (usual + disturbed) / (usual + information)
 }
 
 #[cfg(test)]
@@ -140,13 +85,5 @@ mod tests {
         let (noise, moves) = weighed(hinges(6, 1.0, true).chain(core::iter::from_fn(|| bad.next())));
         assert!(noise.hand_scale < 1.3, "{noise:?}");
         assert!(moves[6].rate_scale > 500.0 && moves[..6].iter().all(|segment| segment.rate_scale < 1.3));
-    }
-
-    #[test]
-    fn a_distant_move_loses_its_weight_and_a_usual_one_keeps_it() {
-        let table = [(2.0, 1.0 / 0.99), (16.0, 2.5), (1e4, 5e3)];
-        for (nis, expected) in table {
-            assert!((disturbance(nis) / expected - 1.0).abs() < 0.1, "{nis}: {}", disturbance(nis));
-        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a pass's innovations say of the noise.
 
+use super::hinge::Hinge;
 use super::likelihood::Likelihood;
-use super::moves::Hinge;
 use super::turn_noise::Pool;
 
 /// What a pass learns about a segment, carried into the next.

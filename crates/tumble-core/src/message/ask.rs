@@ -12,7 +12,7 @@ use crate::setup::TurnStops;
 pub enum Ask {
     /// Put one of these faces up.
     Place {
-        /// What still lacks something; the first in [`crate::procedure::ASKING_ORDER`] is what the sentence proposes.
+        /// What still lacks something; the first in [`crate::face::ASKING_ORDER`] is what the sentence proposes.
         missing: FaceSet,
     },
     /// Do not touch.

@@ -72,7 +72,7 @@ pub fn all_faces(set: FaceSet) -> impl Display {
 
 /// A set in the order of asking.
 pub fn ordered(set: FaceSet) -> impl Iterator<Item = Face> + Clone {
-    crate::procedure::ASKING_ORDER.into_iter().filter(move |face| set.contains(*face))
+    crate::face::ASKING_ORDER.into_iter().filter(move |face| set.contains(*face))
 }
 
 /// Where the arrow of a face points: `the x arrow up`.

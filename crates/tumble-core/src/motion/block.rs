@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
+use super::record::Record;
 use crate::sample::Sample;
-use crate::tape::Record;
 
 /// A record closes once it is this long, s: three to a block. Coning within a record is summed sample by sample;
 /// against 20 Hz this costs nothing that shows, 8 Hz costs 5 % of the non-orthogonality (docs/method.md).

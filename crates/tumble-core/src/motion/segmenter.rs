@@ -367,7 +367,7 @@ fn mean_over<const R: usize, const S: usize>(
     tape: &Tape<R, S>,
     first: usize,
     end: usize,
-    value: fn(&crate::tape::Record) -> Vector3<f32>,
+    value: fn(&super::record::Record) -> Vector3<f32>,
 ) -> Vector3<f32> {
     let (mut sum, mut time) = (Vector3::zeros(), 0.0f32);
     for record in (first..end).filter_map(|index| tape.record(index)) {

@@ -3,10 +3,6 @@
 use super::Scheme;
 use crate::face::{Face, FaceSet};
 
-/// The order of asking when the person has no preference: X, Y, −X, Z, −Y, −Z. No axis follows itself, so that what grows
-/// with time (drift) is not mistaken for what changes with the face (issue 4: it separates the most effects).
-pub const ASKING_ORDER: [Face; 6] = [Face::PlusX, Face::PlusY, Face::MinusX, Face::PlusZ, Face::MinusY, Face::MinusZ];
-
 /// Which way a turn goes, as seen from above.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {

@@ -11,6 +11,7 @@ mod silence;
 
 use super::*;
 use crate::calibration::Verdict;
+use crate::face::ASKING_ORDER;
 use crate::message::{Ask, Note, Refused, RefusedTurn};
 
 /// A procedure with hands: emits the events that the segmenter makes of what the hands do, and a second every second.

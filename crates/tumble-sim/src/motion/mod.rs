@@ -9,13 +9,15 @@ mod platform;
 mod segment;
 mod setting;
 mod shape;
+mod station;
 mod tone;
 
 pub use knock::Knock;
 pub use plan::Standing;
 pub(crate) use platform::{Course, Lean, Shortfall};
-pub use segment::{Kind, Segment, Station};
+pub use segment::{Kind, Segment};
 pub use setting::{BoxShape, Hands, MotionConfig, Stops, Table, Vibration};
+pub use station::Station;
 
 use crate::error::SimError;
 use crate::face::Face;

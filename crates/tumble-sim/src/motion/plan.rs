@@ -1,9 +1,9 @@
 //! From what is wanted to an exact move: the draws that make each one different.
 
 use super::Primitive;
-use super::segment::Station;
 use super::setting::{BoxShape, Hands, MotionConfig};
 use super::shape::{Carry, Juggle, SETTLE_S, Shape, Turn};
+use super::station::Station;
 use super::tone::{Tones, Tremor};
 use crate::face::Face;
 use crate::rng::Rng;

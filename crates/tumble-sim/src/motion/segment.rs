@@ -1,17 +1,8 @@
 //! One move: from rest to rest, exact at every instant.
 
 use super::shape::Shape;
+use super::station::Station;
 use crate::kinematics::{Path, Spin};
-use nalgebra::{UnitQuaternion, Vector3};
-
-/// Where the box is while it rests.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
-    /// `R_n_from_b`.
-    pub rotation_n_from_b: UnitQuaternion<f64>,
-    /// The box's centre in `n`, m.
-    pub position_n_m: Vector3<f64>,
-}
 
 /// What kind of move a segment is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The moves themselves. Times are since the segment's start; `whole` is the segment's duration.
 
-use super::segment::Station;
+use super::station::Station;
 use super::tone::{Tones, Tremor};
 use crate::kinematics::{Jet, Path, Spin, bump, cruise, ease, window};
 use core::f64::consts::TAU;

@@ -22,7 +22,7 @@ use tumble_sim::motion::{Kind, Segment, Stops};
 use tumble_sim::sensor::FrameTruth;
 use tumble_sim::{Recording, SchemeConfig};
 
-use super::trial::{matrix, up_face};
+use super::truth::{matrix, up_face};
 use crate::reference::{ACCEL_BIAS_SIGMA, CORRECTION_SIGMA};
 
 const PHI: usize = 0;

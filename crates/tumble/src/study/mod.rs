@@ -13,3 +13,4 @@ pub mod parallel;
 pub mod recordings;
 pub mod summary;
 pub mod trial;
+pub mod truth;

@@ -8,7 +8,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use tumble_core::calibration::{Calibration, Triad};
 use tumble_sim::{Recording, Scheme, SchemeConfig, SimError};
 
-use super::trial::{Trial, matrix};
+use super::trial::Trial;
+use super::truth::matrix;
 use crate::reference::data::turned;
 
 /// Length of the tumbling, s: the paper's.

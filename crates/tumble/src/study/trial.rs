@@ -1,6 +1,6 @@
 //! One simulated session: the estimate, the truth in the same frame, and the bound.
 
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector};
 use thiserror::Error;
 use tumble_core::calibration::{Calibration, Verdict};
 use tumble_core::estimate::two_step::Variant;
@@ -9,9 +9,10 @@ use tumble_core::procedure::{BoxFaces, TurnStops};
 use tumble_core::sample::Sample;
 use tumble_sim::motion::Stops;
 use tumble_sim::sensor::FrameTruth;
-use tumble_sim::{Face, SchemeConfig, SimError};
+use tumble_sim::{SchemeConfig, SimError};
 
 use super::bound::{Knowledge, bound_knowing};
+use super::truth::matrix;
 use crate::calibrate::{Method, Session};
 use crate::recording::Reading;
 
@@ -167,15 +168,4 @@ pub fn true_parameters(truth: &FrameTruth) -> Parameters {
 /// Likewise.
 pub fn estimated(calibration: &Calibration) -> Parameters {
     Parameters::from_iterator(calibration.parameters().take(PARAMETERS).map(|parameter| f64::from(parameter.value)))
-}
-
-/// A matrix of the truth's.
-pub fn matrix(rows: &[[f64; 3]; 3]) -> Matrix3<f64> {
-    Matrix3::from_fn(|i, j| rows[i][j])
-}
-
-/// The face within 20° of an upward direction in the box: its index and its axis.
-pub(super) fn up_face(up_b: &Vector3<f64>) -> Option<(usize, Vector3<f64>)> {
-    let cone = f64::from(tumble_core::face::Face::CONE_COS);
-    Face::ALL.into_iter().map(|face| (face.index(), face.up_b())).find(|(_, axis)| axis.dot(up_b) > cone)
 }

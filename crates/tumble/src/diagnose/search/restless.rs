@@ -4,7 +4,7 @@
 //! best factor s on the noise of rest stands against the largest that is borne: twice the logarithm of their likelihoods' ratio is ½χ²₁
 //! at that bound. One move in twenty may be disturbed by itself.
 
-use tumble_core::estimate::moves::Hinge;
+use tumble_core::estimate::hinge::Hinge;
 
 use super::null::FALSE_ALARMS;
 use crate::diagnose::twin::Twin;

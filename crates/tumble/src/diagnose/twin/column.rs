@@ -3,7 +3,7 @@
 use super::Twin;
 use super::influence::{Influence, Reading};
 use super::nodes::{Node, Pushed, summed};
-use super::steps::Step;
+use super::step::Step;
 
 /// An influence and its pushes.
 pub struct Column {

@@ -14,13 +14,14 @@ pub mod noise;
 pub mod rows;
 mod scatter;
 pub mod state;
+pub mod step;
 pub mod steps;
 pub mod trajectory;
 pub mod visit;
 mod walk;
 
 use tumble_core::estimate::Conditions;
-use tumble_core::estimate::moves::Hinge;
+use tumble_core::estimate::hinge::Hinge;
 use tumble_core::setup::{BoxFaces, TurnStops};
 
 use column::Column;

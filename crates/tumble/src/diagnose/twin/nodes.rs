@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Matrix3x2, Vector3};
 
 use super::Twin;
 use super::influence::Push;
-use super::steps::Step;
+use super::step::Step;
 use super::trajectory::{Moment, Nominal};
 
 /// A moment in a step.

@@ -13,7 +13,7 @@ use super::data::{Deed, Stretch};
 use super::influence::Influence;
 use super::rows::{Address, Class, Rows};
 use super::state::{self, Drive, Observation, State, Whitened};
-use super::steps::Step;
+use super::step::Step;
 use super::trajectory::Moment;
 use super::visit::{Rested, Visit};
 use super::{Pass, noise};

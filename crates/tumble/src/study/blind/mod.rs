@@ -11,6 +11,7 @@ mod make;
 pub mod mapping;
 pub mod score;
 pub(super) mod size;
+pub(super) mod sizing;
 mod store;
 mod strength;
 pub mod table;
@@ -126,7 +127,7 @@ pub fn run(options: &Options, program: &Path, progress: &mut Progress) -> Result
     let ask = |k: usize| {
         let case = &cases[k];
         let twin = twins.get(&case.setting.name("twin")).and_then(|asked| asked.answer.as_ref());
-        store.case(&oracle, case, || size::sizes(&case.ids, options.at, twin, &case.setting))
+        store.case(&oracle, case, || sizing::sizes(&case.ids, options.at, twin, &case.setting))
     };
     parallel::map(total, options.jobs, ask, &mut |done| progress("recordings", done, total))
         .into_iter()
@@ -171,7 +172,7 @@ fn settle(
         }
         let answer = |setting: &Setting| twins.get(&setting.name("twin")).and_then(|asked| asked.answer.as_ref());
         for case in cases.iter_mut().filter(|case| waiting(&&**case)) {
-            let shows = |twin: &Answer| case.ids.iter().all(|id| size::can_show(id, twin));
+            let shows = |twin: &Answer| case.ids.iter().all(|id| sizing::can_show(id, twin));
             if answer(&case.setting).is_some_and(shows) {
                 continue;
             }

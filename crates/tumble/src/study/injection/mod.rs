@@ -17,7 +17,8 @@ use super::blind::ask::Oracle;
 use super::blind::case::{self, Group};
 use super::blind::mapping::{self, Pairing, True};
 use super::blind::score::{self, Outcome};
-use super::blind::size::{self, Size};
+use super::blind::size::Size;
+use super::blind::sizing;
 use super::parallel;
 use crate::inject;
 use crate::recording::Recording;
@@ -189,7 +190,7 @@ fn bearable(options: &Options, id: &str, answer: &Answer) -> Option<Size> {
     if says || !listed {
         return None;
     }
-    size::as_stated(id, options.at, Some(answer), options.seed).filter(|size| size.limit.is_some())
+    sizing::as_stated(id, options.at, Some(answer), options.seed).filter(|size| size.limit.is_some())
 }
 
 fn trial(

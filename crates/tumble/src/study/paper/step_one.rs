@@ -6,7 +6,7 @@ use tumble_sim::motion::{Kind, Segment};
 use tumble_sim::{Recording, SchemeConfig};
 
 use crate::study::navigation::Correction;
-use crate::study::trial::up_face;
+use crate::study::truth::up_face;
 
 /// What of the paper's text is taken how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
