@@ -1,7 +1,7 @@
 //! The diagnosis against recordings whose physics is known: nothing, something, something it does not know, nothing to go by.
 
 use tumble::diagnose::carry::carry;
-use tumble::diagnose::diagnosis::Verdict;
+use tumble::diagnose::diagnosis::{Limit, Verdict};
 use tumble::diagnose::transfer::try_on;
 use tumble::diagnose::{Options, Outcome, diagnose};
 use tumble::recording::{BoxFaces, Metadata, Recording, Row, TurnStops};
@@ -39,7 +39,11 @@ fn a_clean_recording_misses_nothing() {
     let (recording, _) = recording(Scheme::Double, 5, None);
     let diagnosis = ask(&recording, &[]).diagnosis;
     assert_eq!(diagnosis.verdict, Verdict::NothingMissing, "{diagnosis:?}");
-    assert!(diagnosis.detection_limits.iter().any(|limit| limit.id == "gyro_g_sensitivity" && limit.limit < 0.03));
+    assert!(diagnosis.detection_limits.iter().any(|limit| limit.id == "gyro_g_sensitivity" && limit.limit < 0.02));
+    let sigmas = |limit: &Limit| limit.fisher_sigmas.filter(|_| limit.testable);
+    let searched: Vec<_> =
+        diagnosis.detection_limits.iter().filter_map(|limit| Some((&limit.id, sigmas(limit)?))).collect();
+    assert!(searched.len() > 15 && searched.iter().all(|(_, sigmas)| *sigmas < 8.0), "{searched:?}");
 }
 
 /// A turntable: nothing trembles, and the axes that do not turn read noise of the sensor's full bandwidth and nothing else.
