@@ -61,8 +61,18 @@ pub fn conditions(metadata: &Metadata) -> Conditions {
     Conditions {
         stops: metadata.turns.unwrap_or_default(),
         faces: metadata.box_faces.unwrap_or_default(),
-        gravity_mps2: metadata.gravity_mps2.map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
+        gravity_mps2: metadata
+            .gravity_mps2
+            .or(metadata.latitude_deg.map(normal_gravity_mps2))
+            .map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
     }
+}
+
+/// At sea level, by the geodetic latitude: the series of the GRS 1980 ellipsoid. From the standard value it differs by up to 0.27 %, which is
+/// 90 sigma of an accelerometer's scale.
+fn normal_gravity_mps2(latitude_deg: f64) -> f64 {
+    let (once, twice) = (latitude_deg.to_radians().sin(), (2.0 * latitude_deg).to_radians().sin());
+    9.780_327 * (1.0 + 0.005_302_4 * once * once - 0.000_005_8 * twice * twice)
 }
 
 impl Settled {
@@ -168,4 +178,25 @@ const fn wants_rest(reason: &Reason) -> bool {
             | Reason::NotObservable { .. }
             | Reason::Uncertain { .. }
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Equator, 45° and pole of the ellipsoid; what is stated goes first.
+    #[test]
+    fn gravity_follows_the_latitude_where_it_is_not_stated() {
+        let at = |latitude_deg, gravity_mps2| {
+            conditions(&Metadata { latitude_deg, gravity_mps2, ..Metadata::default() }).gravity_mps2
+        };
+        for (latitude_deg, gravity) in [(0.0, 9.780_33), (45.0, 9.806_2), (-90.0, 9.832_19)] {
+            assert!(
+                (at(Some(latitude_deg), None) - gravity).abs() < 2e-5,
+                "{latitude_deg}: {}",
+                at(Some(latitude_deg), None)
+            );
+        }
+        assert_eq!((at(Some(0.0), Some(9.81)), at(None, None)), (9.81, tumble_core::STANDARD_GRAVITY_MPS2));
+    }
 }
