@@ -21,10 +21,10 @@ pub const HEALTHY: [f64; 3] = [1.0, 9.0, 100.0];
 /// Levels that count as an effect.
 pub const WANDERING: [f64; 6] = [400.0, 1600.0, 6400.0, 25_600.0, 102_400.0, 409_600.0];
 
-/// An effect may be this much larger or smaller than typical: the prior is a mixture of widths, so that a large one is not shrunk, and
-/// what shrinking would leave is not taken for a second effect; and so that a small one of many numbers is not priced as if each could
-/// have been anything up to typical (nine numbers at a fortieth of it cost a factor of e³³, for which each must be as large as 4 sigma).
-pub const WIDENINGS: [f64; 5] = [0.0625, 0.25, 1.0, 4.0, 16.0];
+/// An effect may be this much larger than typical: the prior is a mixture of widths, so that a large one is not shrunk, and
+/// what shrinking would leave is not taken for a second effect. Widths below typical (a quarter, a 16th) were tried: a sensitivity to force
+/// shows at two thirds of the size, and half of the rooms' magnetic fields are called one (`docs/diagnosis.md` 8).
+pub const WIDENINGS: [f64; 3] = [1.0, 4.0, 16.0];
 
 /// A variant with its place among the columns.
 #[derive(Clone)]
