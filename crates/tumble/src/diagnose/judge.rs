@@ -11,7 +11,7 @@ use super::findings::{Finding, TIE};
 use super::search::bench::{Accepted, Bench};
 use super::search::restless::{self, Restless};
 use super::search::select::Selection;
-use super::search::unknown::{self, Leftover};
+use super::search::unknown::{self, Aliases, Leftover};
 use super::search::wandering;
 
 /// ln of the odds that a name needs beside a distortion of the samples: 5e8 to 1.
@@ -115,7 +115,7 @@ pub fn judge(bench: &mut Bench, selection: &Selection, leftover: &Leftover, foun
             judged.demoted.push(finding);
             continue;
         }
-        let shapes = shapes_instead(bench, selection, &[k]);
+        let shapes = shapes_instead(bench, selection, &[k], Aliases::LeftOut);
         // A bias that wanders stands for anything that changes with time: beside something unknown it is no name.
         let weak = finding.is_walk || shapes.clear(selection.evidence) < BEYOND_UNKNOWN * finding.found.evidence;
         if let Some(shape) = shapes.rival(selection.evidence, TIE) {
@@ -160,7 +160,7 @@ fn drop_names(bench: &mut Bench, selection: &Selection, judged: &mut Judged, dro
         return;
     }
     let (places, findings): (Vec<usize>, Vec<Finding>) = dropped.into_iter().unzip();
-    let shapes = shapes_instead(bench, selection, &places);
+    let shapes = shapes_instead(bench, selection, &places, Aliases::LeftOut);
     if shapes.best().is_real() {
         judged.yield_to(bench, shapes.best());
         judged.demoted.extend(findings);
@@ -180,7 +180,7 @@ fn one_for_all(bench: &mut Bench, selection: &Selection, judged: &mut Judged) {
     if shifts.len() < 2 {
         return;
     }
-    let shapes = shapes_instead(bench, selection, &shifts);
+    let shapes = shapes_instead(bench, selection, &shifts, Aliases::Counted);
     let coincidence = (shifts.len() - 1) as f64 * (bench.candidates.len() as f64).ln();
     if let Some(shape) = shapes.rival(selection.evidence, TIE + coincidence) {
         judged.yield_to(bench, shape);
@@ -215,7 +215,7 @@ impl Instead {
 
 /// A walk is a part of the noise in force: in its place that is the null's. What a shape explains may have raised that too, a healthy
 /// bias's wander or what stops and moves are taken for: with the shape the least noise may do.
-fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Instead {
+fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize], aliases: Aliases) -> Instead {
     let in_force = bench.twin.noise;
     let walks = of.iter().any(|&k| bench.candidate(&bench.accepted[k]).walk.is_some());
     let least = bench.least_noise(of);
@@ -228,7 +228,7 @@ fn shapes_instead(bench: &mut Bench, selection: &Selection, of: &[usize]) -> Ins
     }
     let weigh = |noise| {
         bench.twin.noise = noise;
-        unknown::weigh(bench, of)
+        unknown::weigh(bench, of, aliases)
     };
     let at: Vec<Leftover> = noises.into_iter().map(weigh).collect();
     bench.twin.noise = in_force;

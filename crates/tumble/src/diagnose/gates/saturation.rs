@@ -84,8 +84,15 @@ fn triad(
 ) -> Outcome {
     let largest = channels.clone().flat_map(|c| view.channels[c].iter()).fold(0.0_f64, |max, v| max.max(v.abs()));
     let mut flats: Vec<Flat> = Vec::new();
-    for channel in channels {
+    for channel in channels.clone() {
         flats.extend([1.0, -1.0].into_iter().filter_map(|sign| flat(view, stale, channel, sign)));
+    }
+    if let Some(level) = flats.iter().map(|flat| flat.level.abs()).reduce(f64::max) {
+        let ends = channels.flat_map(|channel| [(channel, 1.0), (channel, -1.0)]);
+        let known =
+            |(channel, sign): &(usize, f64)| flats.iter().any(|f| f.channel == *channel && f.level * sign > 0.0);
+        let more: Vec<Flat> = ends.filter(|end| !known(end)).filter_map(|end| once(view, stale, end, level)).collect();
+        flats.extend(more);
     }
     let mut outcome =
         Outcome { limit: limit(card, largest, unit, "a level below the largest reading"), ..Outcome::default() };
@@ -149,6 +156,20 @@ fn flat(view: &View, stale: &[usize], channel: usize, sign: f64) -> Option<Flat>
     let ln_p = ln_pile(values, sign, level, step) + (SWING * top / step).max(1.0).ln();
     let samples = || (0..values.len()).filter(|i| sign * values[*i] > level - blur(step)).collect();
     (ln_p < LN_ALARM).then(|| Flat { channel, level: sign * level, samples: samples(), evidence: -ln_p })
+}
+
+/// An end that stands once at the level where others of its triad clip does so too: one converter has one range.
+fn once(view: &View, stale: &[usize], (channel, sign): (usize, f64), level: f64) -> Option<Flat> {
+    let (values, step) = (&view.channels[channel], view.step[channel]);
+    let top = values.iter().fold(f64::NEG_INFINITY, |max, v| max.max(sign * v));
+    if (top - level).abs() > 1.5 * step {
+        return None;
+    }
+    let samples: Vec<usize> = (0..values.len()).filter(|i| sign * values[*i] > top - blur(step)).collect();
+    let fresh = |run: &[usize]| run.iter().filter(|i| stale.binary_search(i).is_err()).count();
+    let stands =
+        samples.chunk_by(|a, b| a + 1 == *b).any(|run| fresh(run) >= least_run(view, view.sigma[channel] / step));
+    stands.then(|| Flat { channel, level: sign * top, samples, evidence: 0.0 })
 }
 
 /// Text decimals blur one level by less than a tenth of a step.

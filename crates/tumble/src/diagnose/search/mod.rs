@@ -10,5 +10,6 @@ pub mod null;
 pub mod restless;
 pub mod select;
 pub mod shares;
+mod slide;
 pub mod unknown;
 pub mod wandering;

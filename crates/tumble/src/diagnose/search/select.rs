@@ -5,17 +5,13 @@ use std::sync::Arc;
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, Term, log_mean};
 use super::null;
+use super::slide::slide;
 use crate::diagnose::numbers::walk_density;
 use crate::diagnose::twin::noise::{Noise, walk_floor};
-use crate::diagnose::twin::rows::{Class, Rows};
+use crate::diagnose::twin::rows::Rows;
 
 /// Effects that one recording can be asked to tell apart.
 const MOST_EFFECTS: usize = 5;
-
-/// A hand's pushes in a turn over gravity: 1 to 60 mg.
-const SLIDES: [f64; 5] = [1e-3, 2.8e-3, 7.7e-3, 0.022, 0.06];
-/// Half of what χ²₁ exceeds twice in a thousand recordings: a push of the wrong size is none.
-const SURE: f64 = 4.77;
 
 /// A candidate's gain in evidence over what is accepted.
 #[derive(Clone, Debug)]
@@ -59,32 +55,31 @@ pub fn settle_walks(bench: &mut Bench) -> (Noise, f64) {
     best_noise(bench, &terms)
 }
 
-/// All of it together: what one base takes for wander the other takes for moves.
+/// All of it together: what one base takes for wander the other takes for moves. Pushes in turns are looked for about the best of it, and all else
+/// once more beside them.
 fn best_noise(bench: &mut Bench, terms: &[Term]) -> (Noise, f64) {
+    let still = steady_noise(bench, terms, (0.0, 1.0));
+    let pushed = slide(bench, terms, still);
+    if pushed.0.slide_rad == 0.0 {
+        return still;
+    }
+    let again = steady_noise(bench, terms, (pushed.0.slide_rad, pushed.0.slide_s));
+    if again.1 > pushed.1 { again } else { pushed }
+}
+
+fn steady_noise(bench: &mut Bench, terms: &[Term], (slide_rad, slide_s): (f64, f64)) -> (Noise, f64) {
     let mut best = (bench.given, f64::NEG_INFINITY);
-    let mut shaken = false;
     for base in [bench.given, bench.given.trusting(bench.twin.stops)] {
-        for (gyro, accel) in HEALTHY.iter().flat_map(|gyro| HEALTHY.iter().map(move |accel| (*gyro, *accel))) {
-            let noise = bench.with_accepted_walks(&with_walks(&base, gyro, accel), &[]);
-            let (ledger, terms) = bench.ledger_under(noise, terms);
-            let fit = ledger.fit(&terms);
-            if fit.evidence > best.1 {
-                best = (noise, fit.evidence);
-                shaken = ledger.is_exceeded(&fit, Class::TurnForce);
+        for (gyro, accel) in HEALTHY.iter().flat_map(|gyro| HEALTHY.iter().map(move |accel| (gyro, accel))) {
+            let base = Noise { slide_rad, slide_s, ..base };
+            let noise = bench.with_accepted_walks(&with_walks(&base, *gyro, *accel), &[]);
+            let evidence = bench.fit_alone(noise, terms).evidence;
+            if evidence > best.1 {
+                best = (noise, evidence);
             }
         }
     }
-    if shaken { slide(bench, terms, best) } else { best }
-}
-
-/// Where turns scatter more than they should: does a hand push the box about in them?
-fn slide(bench: &mut Bench, terms: &[Term], still: (Noise, f64)) -> (Noise, f64) {
-    let tried = SLIDES.map(|slide_rad| {
-        let noise = Noise { slide_rad, ..still.0 };
-        (noise, bench.fit_alone(noise, terms).evidence)
-    });
-    let best = tried.into_iter().fold(still, |best, one| if one.1 > best.1 { one } else { best });
-    if best.1 > still.1 + SURE { best } else { still }
+    best
 }
 
 /// Runs the search to its end; `progress` hears what is being done.

@@ -29,6 +29,15 @@ pub struct Block {
     pub members: Vec<usize>,
 }
 
+/// Shapes that the effects in whose place they are weighed imitate.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Aliases {
+    /// The shape and the one effect are the same thing on this recording: it is named.
+    LeftOut,
+    /// One shape that takes several effects to imitate it is no coincidence.
+    Counted,
+}
+
 /// What a block gained.
 #[derive(Clone, Debug)]
 pub struct Leftover {
@@ -127,11 +136,11 @@ fn across(family: &Family, channels: usize) -> Vec<Vec<usize>> {
 /// look counts against the same null, and two looks cost ln 2.
 pub fn left_over(bench: &mut Bench) -> Leftover {
     let in_force = bench.twin.noise;
-    let mut left = weigh(bench, &[]);
+    let mut left = weigh(bench, &[], Aliases::LeftOut);
     let least = bench.least_noise(&[]);
     if least != in_force {
         bench.twin.noise = least;
-        let quiet = weigh(bench, &[]);
+        let quiet = weigh(bench, &[], Aliases::LeftOut);
         bench.twin.noise = in_force;
         if quiet.reached() > left.reached() {
             left = quiet.against(left.base);
@@ -141,8 +150,8 @@ pub fn left_over(bench: &mut Bench) -> Leftover {
     left
 }
 
-/// Weighs all blocks beside what is accepted; in the place of those in `instead_of`, aliases of them left out.
-pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
+/// Weighs all blocks beside what is accepted; in the place of those in `instead_of`.
+pub fn weigh(bench: &mut Bench, instead_of: &[usize], treated: Aliases) -> Leftover {
     let (given, rows) = Given::new(bench, instead_of);
     let first = bench.candidate_columns();
     let (mut all, mut ranking, mut aliases) = (Vec::new(), Vec::new(), Vec::new());
@@ -151,7 +160,7 @@ pub fn weigh(bench: &mut Bench, instead_of: &[usize]) -> Leftover {
         let start = given.terms.len() + bench.families[block.family].1.start - first;
         let columns: Vec<usize> = block.members.iter().map(|member| start + member).collect();
         let Some((mean, strongest)) = given.with(&columns) else { continue };
-        if given.is_alias(&strongest) {
+        if treated == Aliases::LeftOut && given.is_alias(&strongest) {
             aliases.push((block, strongest.gain));
             continue;
         }

@@ -38,13 +38,12 @@ pub struct Noise {
     pub contact_sigma_rad: f64,
     /// How far a turn's axis is from where other turns have it, m.
     pub pivot_sigma_m: f64,
-    /// How a hand pushes the box about in a turn: its horizontal acceleration over gravity, 1. A Gauss–Markov process of time constant
-    /// [`SLIDE_S`] in frame n; none unless the turns show it.
+    /// How a hand pushes the box about in a turn: its horizontal acceleration over gravity, 1. A Gauss–Markov process in frame n; none
+    /// unless the turns show it.
     pub slide_rad: f64,
+    /// Its time constant, s.
+    pub slide_s: f64,
 }
-
-/// A hand that turns a box gives it another push about as often, s.
-pub const SLIDE_S: f64 = 1.0;
 
 /// Least wander that is taken for granted: 1 mdps and 10 µg in 100 s.
 pub const BIAS_WALK_FLOOR: f64 = 3.046e-12;
@@ -103,6 +102,7 @@ impl Noise {
             turn_scale: 1.0,
             hand_scale: 1.0,
             slide_rad: 0.0,
+            slide_s: 1.0,
             ..*self
         }
     }
@@ -124,6 +124,7 @@ impl Noise {
             contact_sigma_rad: f64::from(device.contact_sigma_rad).max(CONTACT_RAD),
             pivot_sigma_m: f64::from(device.pivot_sigma_m).max(PIVOT_SIGMA_M),
             slide_rad: 0.0,
+            slide_s: 1.0,
         }
     }
 }

@@ -8,15 +8,16 @@ use std::ops::Range;
 use nalgebra::{DMatrix, Vector3};
 use tumble_core::face::Face;
 
+use super::Pass;
 use super::column::Column;
 use super::data::{Deed, Stretch};
 use super::influence::Influence;
+use super::noise::Noise;
 use super::rows::{Address, Class, Rows};
 use super::state::{self, Drive, Observation, State, Whitened};
 use super::step::Step;
 use super::trajectory::Moment;
 use super::visit::{Rested, Visit};
-use super::{Pass, noise};
 
 /// The pass's memory.
 pub(super) struct Walk<'a> {
@@ -131,9 +132,9 @@ impl<'a> Walk<'a> {
     }
 
     fn slide(&mut self, duration_s: f64) {
-        let sigma = self.pass.noise.slide_rad;
+        let Noise { slide_rad: sigma, slide_s, .. } = *self.pass.noise;
         if sigma > 0.0 {
-            let factor = (-duration_s / noise::SLIDE_S).exp();
+            let factor = (-duration_s / slide_s).exp();
             self.state.fade(state::SLIDE, 2, factor, (1.0 - factor * factor) * sigma * sigma);
         }
     }
