@@ -24,6 +24,7 @@ mod accel_lever_arm;
 mod accel_quadratic;
 mod accel_saturation;
 mod accel_scale_temperature;
+mod accel_warm_up;
 mod axis_mapping;
 mod bias;
 mod byte_tearing;

@@ -13,7 +13,7 @@ const CONTRACT: &str = "gyro_g_sensitivity gyro_g_squared gyro_scale_quadratic g
     accel_bias_random_walk accel_quadratic accel_cubic accel_lever_arm accel_internal_lever_arms gyro_accel_lag \
     timestamp_jitter timestamp_quantization dropped_samples duplicated_samples byte_tearing incomplete_turn \
     platform_tilt_change spin_axis_wobble table_rocking vibration_line shock earth_rotation axis_mapping wrong_full_scale \
-    undersampling frozen_reading";
+    undersampling frozen_reading accel_warm_up";
 
 #[test]
 fn the_catalogue_is_the_contracts() {

@@ -119,6 +119,11 @@ fn biases_move_of_themselves() {
     assert!((bias.norm() - 0.3).abs() < 1e-12 && (20.0..100.0).contains(&tau_s));
     pair.check(|t| bias * dps((-t / tau_s).exp()), none);
 
+    let pair = Pair::quiet("accel_warm_up=3");
+    let (bias, tau_s) = (pair.vector("decaying_bias"), pair.parameter("time_constant"));
+    assert!((bias.norm() - 3.0).abs() < 1e-12 && (20.0..100.0).contains(&tau_s));
+    pair.check(none, |t| bias * mg((-t / tau_s).exp()));
+
     for (id, unit) in [("gyro_bias_step", dps(1.0)), ("accel_bias_step", mg(1.0))] {
         let pair = Pair::quiet(&format!("{id}=0.7"));
         let (step, time_s) = (pair.vector("step"), pair.parameter("step_time"));

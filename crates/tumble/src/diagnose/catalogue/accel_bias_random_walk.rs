@@ -9,7 +9,7 @@ const CARD: Card = Card {
     equation: "d(bias) = q * dW",
     typical: "below 20 ug/sqrt(s) for a healthy MEMS accelerometer",
     shows: "gravity at rest differs by amounts that grow with the time between, with no relation to faces",
-    confounded: &["accel_bias_step", "platform_tilt_change"],
+    confounded: &["accel_bias_step", "platform_tilt_change", "accel_warm_up"],
     separate_by: "leave the sensor untouched for ten minutes: what wanders then is the bias itself",
 };
 

@@ -9,7 +9,7 @@ const CARD: Card = Card {
     equation: "f_raw_i += c_i * (t > t0)",
     typical: "1 to 20 mg after a shock or bending of the board; none in undisturbed operation",
     shows: "gravity at rest before and after an instant differs on every face alike",
-    confounded: &["accel_bias_random_walk", "platform_tilt_change"],
+    confounded: &["accel_bias_random_walk", "platform_tilt_change", "accel_warm_up"],
     separate_by: "return to faces that were rested on before the jump",
 };
 

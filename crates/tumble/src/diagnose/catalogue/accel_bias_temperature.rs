@@ -9,7 +9,7 @@ const CARD: Card = Card {
     equation: "f_raw_i += c_i * (T - T_mean)",
     typical: "up to 1.5 mg/K (MPU-9250 sheet: 1.5 mg/degC)",
     shows: "gravity at rest moves with the temperature column, by the same on every face",
-    confounded: &["accel_bias_random_walk", "accel_scale_temperature"],
+    confounded: &["accel_bias_random_walk", "accel_scale_temperature", "accel_warm_up"],
     separate_by: "rest on the same face at two temperatures at least 5 K apart",
 };
 

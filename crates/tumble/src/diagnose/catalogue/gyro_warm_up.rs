@@ -4,7 +4,7 @@ use super::{Card, DPS, Effect, Model, Variant, gyro_axes};
 use crate::diagnose::twin::Twin;
 
 /// Time constants tried, s: a die in its package to a board on its feet.
-const TIMES_S: [f64; 6] = [8.0, 16.0, 30.0, 55.0, 100.0, 180.0];
+pub(super) const TIMES_S: [f64; 6] = [8.0, 16.0, 30.0, 55.0, 100.0, 180.0];
 
 const CARD: Card = Card {
     id: "gyro_warm_up",

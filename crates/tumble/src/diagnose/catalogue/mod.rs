@@ -9,6 +9,7 @@ mod accel_internal_lever_arms;
 mod accel_lever_arm;
 mod accel_quadratic;
 mod accel_scale_temperature;
+mod accel_warm_up;
 pub mod earth_rotation;
 mod gyro_accel_lag;
 mod gyro_bias_random_walk;
@@ -113,7 +114,7 @@ pub struct Effect {
 }
 
 /// All that are found by regression, in the contract's order.
-pub const STRUCTURAL: [Effect; 23] = [
+pub const STRUCTURAL: [Effect; 24] = [
     gyro_g_sensitivity::EFFECT,
     gyro_g_squared::EFFECT,
     gyro_scale_quadratic::EFFECT,
@@ -137,6 +138,7 @@ pub const STRUCTURAL: [Effect; 23] = [
     incomplete_turn::EFFECT,
     platform_tilt_change::EFFECT,
     earth_rotation::EFFECT,
+    accel_warm_up::EFFECT,
 ];
 
 /// Of effects whose setting may be any number: what it does at one, for numbers finer than the variants' grid.
@@ -145,6 +147,7 @@ pub fn at_any_setting(id: &str) -> Option<fn(f64) -> Variant> {
         "gyro_bias_step" => Some(gyro_bias_step::from),
         "accel_bias_step" => Some(accel_bias_step::from),
         "gyro_warm_up" => Some(gyro_warm_up::of),
+        "accel_warm_up" => Some(accel_warm_up::of),
         _ => None,
     }
 }

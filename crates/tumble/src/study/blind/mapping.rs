@@ -106,6 +106,7 @@ const RULES: &[(&str, Rule)] = &[
     ("gyro_bias_temperature", |t| axes(t, "slope")),
     ("gyro_scale_temperature", |t| axes(t, "slope")),
     ("gyro_warm_up", |t| both(axes(t, "decaying_bias"), renamed(t, "time_constant", "tau"))),
+    ("accel_warm_up", |t| both(axes(t, "decaying_bias"), renamed(t, "time_constant", "tau"))),
     ("gyro_bias_step", |t| both(axes(t, "step"), renamed(t, "step_time", "at"))),
     ("gyro_bias_random_walk", |t| renamed(t, "random_walk", "q")),
     ("accel_bias_temperature", |t| axes(t, "slope")),
