@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use tumble_core::calibration::Verdict;
 use tumble_core::estimate::Conditions;
 use tumble_core::estimate::two_step::Variant;
 use tumble_core::sample::Ranges;
@@ -12,6 +13,7 @@ use super::{Refusal, TurnsWord, output};
 use crate::calibrate::{self, Method, Session};
 use crate::diagnose::carry;
 use crate::faults::{self, Mended};
+use crate::omissions;
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
 
@@ -77,6 +79,9 @@ pub(super) struct Arguments {
     /// First round every reading to the board's counts (±2000 °/s, ±16 g), as a replay on the emulated board does
     #[arg(long)]
     board_counts: bool,
+    /// Do not look for physics that bends the numbers and that they do not hold (2 to 10 s)
+    #[arg(long)]
+    quick: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
@@ -114,8 +119,13 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
     };
     let mut progress = Progress::new();
     let mut outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
-    drop(progress);
     remarks.into_iter().for_each(|remark| outcome.warn(remark));
+    let own_model = matches!(arguments.estimator, EstimatorWord::Device | EstimatorWord::Batch);
+    if own_model && !replayed && !arguments.quick && outcome.verdict != Verdict::Rejected {
+        let what = |what: &str, share: f32| progress.share(what, share);
+        omissions::look(recording, session.conditions, &mut outcome, what);
+    }
+    drop(progress);
     let report = Report::of(&outcome).carrying(carried);
     if arguments.json {
         print_json(&report)?;
