@@ -18,12 +18,7 @@ use crate::recording::Recording;
 const HELD: [&str; 3] = ["accel_lever_arm", "earth_rotation", "incomplete_turn"];
 
 /// Diagnoses the recording and adds to the outcome's warnings what its numbers do not allow for.
-pub fn look(
-    recording: &Recording,
-    conditions: Conditions,
-    outcome: &mut Outcome,
-    mut progress: impl FnMut(&str, f32),
-) {
+pub fn look(recording: &Recording, conditions: Conditions, outcome: &mut Outcome, mut progress: impl FnMut(&str, f32)) {
     let options = Options { without: Vec::new(), seed: 1, conditions: Some(conditions) };
     let diagnosis = diagnose(recording, &options, &mut progress).diagnosis;
     let carries_g = outcome.calibration.as_ref().is_some_and(|calibration| calibration.g_sensitivity.is_some());

@@ -3,10 +3,10 @@
 use super::kind::Kind;
 use super::{
     accel_bias_random_walk, accel_bias_step, accel_bias_temperature, accel_cubic, accel_internal_lever_arms,
-    accel_lever_arm, accel_quadratic, accel_saturation, accel_scale_temperature, accel_warm_up, axis_mapping, byte_tearing,
-    dropped_samples, duplicated_samples, earth_rotation, frozen_reading, gyro_accel_lag, gyro_bias_random_walk,
-    gyro_bias_step, gyro_bias_temperature, gyro_coarse_quantization, gyro_dead_zone, gyro_g_sensitivity,
-    gyro_g_squared, gyro_saturation, gyro_scale_asymmetry, gyro_scale_cubic, gyro_scale_quadratic,
+    accel_lever_arm, accel_quadratic, accel_saturation, accel_scale_temperature, accel_warm_up, axis_mapping,
+    byte_tearing, dropped_samples, duplicated_samples, earth_rotation, frozen_reading, gyro_accel_lag,
+    gyro_bias_random_walk, gyro_bias_step, gyro_bias_temperature, gyro_coarse_quantization, gyro_dead_zone,
+    gyro_g_sensitivity, gyro_g_squared, gyro_saturation, gyro_scale_asymmetry, gyro_scale_cubic, gyro_scale_quadratic,
     gyro_scale_temperature, gyro_warm_up, incomplete_turn, platform_tilt_change, shock, spin_axis_wobble,
     table_rocking, timestamp_jitter, timestamp_quantization, undersampling, vibration_line, wrong_full_scale,
 };

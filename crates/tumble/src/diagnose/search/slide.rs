@@ -10,11 +10,12 @@ use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::noise::Noise;
 
 /// σ over gravity: 0.1 to 60 mg, by 2.8.
-const SIGMAS: [f64; 7] = [1.3e-4, 3.6e-4, 1e-3, 2.8e-3, 7.7e-3, 0.022, 0.06];
+const SIGMAS: [f64; 13] =
+    [1.3e-4, 2.2e-4, 3.6e-4, 6e-4, 1e-3, 1.7e-3, 2.8e-3, 4.6e-3, 7.7e-3, 0.013, 0.022, 0.036, 0.06];
 /// τ, s: a jerk, a push, a box that slides through half a turn.
-const TIMES: [f64; 3] = [0.3, 1.0, 3.0];
+const TIMES: [f64; 6] = [0.17, 0.3, 0.55, 1.0, 1.7, 3.0];
 /// Where the climb begins.
-const START: (usize, usize) = (2, 1);
+const START: (usize, usize) = (4, 3);
 /// Half of what χ²₂ exceeds twice in a thousand recordings: a push of the wrong size is none.
 const SURE: f64 = 6.21;
 

@@ -55,7 +55,7 @@ pub enum Outcome {
     Extra,
     /// One of two.
     Half,
-    /// One of two, where the other shows at no size.
+    /// One of two, where the other shows at no size; or nothing, where the largest size that is made shows nothing.
     Hidden,
     /// Something else.
     Wrong,
@@ -111,6 +111,10 @@ impl Scored {
         let ids: Vec<&str> = hidden.effects.iter().map(|(id, _)| id.as_str()).collect();
         let outcome = asked.answer.as_ref().map_or(Outcome::Broken, |answer| match judge(hidden.group, &ids, answer) {
             Outcome::Half if hidden.sizes.iter().any(|size| size.by == size::HIDDEN) => Outcome::Hidden,
+            // The largest that the simulation makes of it is less than its limit here.
+            Outcome::Missed if hidden.group == Group::Foreign && hidden.sizes.iter().any(Size::is_below_limit) => {
+                Outcome::Hidden
+            }
             outcome => outcome,
         });
         let found = |id: &str| asked.answer.as_ref()?.effects.iter().find(|named| named.id == id);

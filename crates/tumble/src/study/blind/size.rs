@@ -20,3 +20,10 @@ pub struct Size {
     /// `limit`, or why it was drawn from the effect's own range.
     pub by: String,
 }
+
+impl Size {
+    /// Is it less than what would show? Of something outside the catalogue, of which more is more.
+    pub fn is_below_limit(&self) -> bool {
+        self.limit.is_some_and(|limit| self.magnitude < limit)
+    }
+}
