@@ -153,7 +153,7 @@ impl<const S: usize> Walk<S> {
         let slope = slope(tape, index, record);
         let lever = on_table.then(|| {
             let turn = self.pass.now.rotation(record) / record.dt_s;
-            model::lever(&turn, &(self.pass.now.gyro.correction * slope))
+            model::lever(&turn, &(self.pass.now.gyro.correction * slope), record.dt_s)
         });
         self.turn(record, &slope, lever.as_ref());
         if on_table && self.pass.group.records == GROUP {
@@ -166,7 +166,7 @@ impl<const S: usize> Walk<S> {
         let rotation = self.pass.now.rotation(record) + self.pass.now.coning(record, slope);
         let middle = self.pass.attitude * UnitQuaternion::from_scaled_axis(rotation * 0.5);
         let to_n = middle.to_rotation_matrix().into_inner();
-        let gravity = lever.map(|lever| self.pass.now.gravity(record, &to_n, self.gravity, lever));
+        let gravity = lever.map(|lever| self.pass.now.gravity_in_turn(record, &rotation, &to_n, self.gravity, lever));
         self.pass.group.take(&self.pass.now.drive(record, &to_n), gravity.as_ref(), &to_n, record.dt_s);
         let earth = UnitQuaternion::from_scaled_axis(self.pass.nominal.earth_rad_s * -record.dt_s);
         let next = earth * self.pass.attitude * UnitQuaternion::from_scaled_axis(rotation);
@@ -270,7 +270,7 @@ impl<const S: usize> Walk<S> {
     fn learn_turn_noise(&mut self) {
         let Some((excess, variance)) = self.pass.turn_noise.value().filter(|_| self.adapting) else { return };
         let scale = &mut self.noise[self.pass.segment].force_scale;
-        let (value, variance) = (*scale * (1.0 + excess), *scale * *scale * variance);
+        let value = *scale * (1.0 + excess);
         self.pass.sums.turn_noise.take(value, variance);
         let (mean, apart) = self.pass.turn_prior.unwrap_or((value, 0.0));
         *scale = (mean + apart / (apart + variance) * (value - mean)).clamp(1.0, 1e6);

@@ -169,7 +169,7 @@ fn once(view: &View, stale: &[usize], (channel, sign): (usize, f64), level: f64)
     let fresh = |run: &[usize]| run.iter().filter(|i| stale.binary_search(i).is_err()).count();
     let stands =
         samples.chunk_by(|a, b| a + 1 == *b).any(|run| fresh(run) >= least_run(view, view.sigma[channel] / step));
-    stands.then(|| Flat { channel, level: sign * top, samples, evidence: 0.0 })
+    stands.then_some(Flat { channel, level: sign * top, samples, evidence: 0.0 })
 }
 
 /// Text decimals blur one level by less than a tenth of a step.
