@@ -11,6 +11,7 @@ pub mod diagnose;
 pub mod export;
 pub mod faults;
 pub mod inject;
+pub mod integrate;
 pub mod omissions;
 pub mod output;
 pub mod recording;

@@ -145,8 +145,9 @@ impl Accumulator {
     fn integrate(&mut self, last: &Sample, sample: &Sample, dt: f32) {
         let [a, b] = [last, sample].map(|sample| sample.angular_rate_rad_s - self.resting_rate);
         let slope = (b - a) / dt;
-        let bend =
-            self.slope.replace((slope, dt)).map_or(ZERO, |(before, span)| (slope - before) * (2.0 / (dt + span)));
+        // Stamps that came in a bunch would make slopes of nothing.
+        let before = self.slope.replace((slope, dt)).filter(|(_, span)| (0.5 * dt..=2.0 * dt).contains(span));
+        let bend = before.map_or(ZERO, |(before, span)| (slope - before) * (2.0 / (dt + span)));
         let turn = (a + b) * (0.5 * dt) - bend * (dt * dt * dt / 12.0) + a.cross(&b) * (dt * dt / 12.0);
         let swept = self.turned.cross(&turn);
         self.turned += turn + swept * 0.5 + (self.turned - turn).cross(&swept) / 12.0;

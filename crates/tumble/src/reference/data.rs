@@ -1,10 +1,11 @@
 //! The segments of a tape with the samples that they were made from.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use tumble_core::estimate::stand::standing;
 use tumble_core::face::Face;
 use tumble_core::tape::{Exclusion, Kind, Record, Segment};
 
+use crate::integrate;
 use crate::recording::Reading;
 use crate::settle::HostTape;
 
@@ -18,6 +19,8 @@ pub struct Interval {
     pub dt_s: f64,
     /// Raw rates at both ends, rad/s.
     pub rates: [Vector3<f64>; 2],
+    /// Raw, what the rate between them adds to their mean, rad.
+    pub bend: Vector3<f64>,
     /// Raw specific force, the mean of both ends, m/s².
     pub force: Vector3<f64>,
     /// Raw rate, mean of a window, rad/s.
@@ -75,6 +78,7 @@ fn recorded(records: &[Record], resting_rate: &Vector3<f64>, index: usize) -> In
     Interval {
         dt_s,
         rates: [-0.5, 0.5].map(|end| mean + slope * (end * dt_s)),
+        bend: Vector3::zeros(),
         force: record.specific_force_mps2.cast(),
         smooth_rate: rate(record),
         slope,
@@ -120,6 +124,7 @@ fn interval(readings: &[Reading], last: usize) -> Interval {
     Interval {
         dt_s: time_s(last) - time_s(last - 1),
         rates: [rate(last - 1), rate(last)],
+        bend: integrate::bend(last, readings.len(), time_s, rate),
         force: 0.5 * (force(last - 1) + force(last)),
         smooth_rate: sum / count,
         slope: moment / inertia,
@@ -143,7 +148,10 @@ impl Stretch {
     }
 }
 
-/// The rotation over one interval of compensated rates: trapezoid, and the coning of a rate that changes linearly.
-pub fn turned(a: &Vector3<f64>, b: &Vector3<f64>, dt_s: f64) -> UnitQuaternion<f64> {
-    UnitQuaternion::from_scaled_axis((a + b) * (0.5 * dt_s) + a.cross(b) * (dt_s * dt_s / 12.0))
+impl Interval {
+    /// The rotation over it, by `ω = M (raw − b)`.
+    pub fn turned(&self, correction: &Matrix3<f64>, bias: &Vector3<f64>) -> UnitQuaternion<f64> {
+        let [a, b] = self.rates.map(|rate| correction * (rate - bias));
+        integrate::rotation(&a, &b, &(correction * self.bend), self.dt_s)
+    }
 }

@@ -8,7 +8,7 @@
 use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 use tumble_core::estimate::{Conditions, Noise};
 
-use super::data::{Stretch, turned};
+use super::data::Stretch;
 use super::solve::{Block, minimise};
 use super::{ACCEL_BIAS_SIGMA, CORRECTION_SIGMA};
 
@@ -129,8 +129,7 @@ fn hinge<'a>(
         let correction = Matrix3::from_row_slice(x);
         let mut rotation = UnitQuaternion::identity();
         for interval in moves.iter().flat_map(|stretch| &stretch.intervals) {
-            let [a, b] = interval.rates.map(|rate| correction * (rate - bias));
-            rotation *= turned(&a, &b, interval.dt_s);
+            rotation *= interval.turned(&correction, &bias);
         }
         ((rotation.inverse_transform_vector(&before) - after) / sigma).iter().copied().collect()
     })

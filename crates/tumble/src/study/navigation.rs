@@ -10,7 +10,7 @@ use tumble_sim::{Recording, Scheme, SchemeConfig, SimError};
 
 use super::trial::Trial;
 use super::truth::matrix;
-use crate::reference::data::turned;
+use crate::integrate::rotation;
 
 /// Length of the tumbling, s: the paper's.
 pub const TUMBLE_S: f64 = 65.0;
@@ -125,7 +125,8 @@ pub fn level_errors(recording: &Recording, compensation: &Compensation) -> Vec<(
         let dt = pair[1].t_s - pair[0].t_s;
         let [a, b] = [0, 1].map(|i| compensation.gyro.apply(&pair[i].angular_rate_rad_s));
         let earth = UnitQuaternion::from_scaled_axis(earth * -dt);
-        attitude = UnitQuaternion::new_normalize((earth * attitude * turned(&a, &b, dt)).into_inner());
+        attitude =
+            UnitQuaternion::new_normalize((earth * attitude * rotation(&a, &b, &Vector3::zeros(), dt)).into_inner());
         let up = attitude.inverse_transform_vector(&Vector3::z());
         let truth = true_up(pair[1].t_s);
         levels.push((pair[1].t_s - start_s, up.cross(&truth).norm().atan2(up.dot(&truth)).to_degrees()));

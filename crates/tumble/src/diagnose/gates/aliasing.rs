@@ -21,6 +21,7 @@ use super::tell::{Outcome, found, limit, untestable, value};
 use super::view::View;
 use crate::diagnose::catalogue::Card;
 use crate::diagnose::diagnosis::{Found, Place};
+use crate::integrate::rotation;
 
 const IMITATED: &[&str] = &["gyro_scale_cubic", "gyro_scale_quadratic", "gyro_scale_asymmetry", "gyro_accel_lag"];
 const SLOW_HZ: f64 = 40.0;
@@ -117,7 +118,7 @@ impl Thinned<'_> {
             (range.start..end).step_by(every).fold(UnitQuaternion::identity(), |attitude, i| {
                 let dt_s = self.t_s(i + every) - self.t_s(i);
                 let (a, b) = (self.rate(i), self.rate(i + every));
-                attitude * UnitQuaternion::from_scaled_axis((a + b) * (0.5 * dt_s) + a.cross(&b) * (dt_s * dt_s / 12.0))
+                attitude * rotation(&a, &b, &Vector3::zeros(), dt_s)
             })
         };
         (integral(1).inverse() * integral(2)).scaled_axis()

@@ -5,6 +5,7 @@ use tumble_core::calibration::Triad;
 use tumble_core::face::Face;
 
 use super::data::{Deed, Raw, Stretch};
+use crate::integrate;
 
 /// Window of the angular acceleration's slope to either side, s: as in the `batch` reference.
 pub const SLOPE_S: f64 = 1.0 / 12.0;
@@ -186,14 +187,15 @@ impl Walker<'_> {
         levelled
     }
 
-    /// Carries attitude over one interval: trapezoid with the coning of a rate that changes linearly, and the Earth.
+    /// Carries attitude over one interval, and the Earth.
     fn turn(&mut self, index: usize, dt_s: f64) -> f64 {
         let (a, b) = (self.rates[index - 1], self.rates[index]);
-        let rotation = UnitQuaternion::from_scaled_axis((a + b) * (0.5 * dt_s) + a.cross(&b) * (dt_s * dt_s / 12.0));
+        let bend = integrate::bend(index, self.rates.len(), |index| self.samples[index].t_s, |index| self.rates[index]);
+        let rotation = integrate::rotation(&a, &b, &bend, dt_s);
         let earth = UnitQuaternion::from_scaled_axis(-self.nominal.earth * dt_s);
         let before = self.attitude;
         self.attitude = earth * before * rotation;
-        (before * ((a + b) * (0.5 * dt_s))).z
+        (before * ((a + b) * (0.5 * dt_s) + bend)).z
     }
 
     fn level(&mut self, stretch: &Stretch) -> Vector3<f64> {

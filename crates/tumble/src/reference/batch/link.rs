@@ -8,7 +8,7 @@ use tumble_core::tape::Kind;
 use super::Setting;
 use super::unknowns::{GYRO, Globals, LEVER, Rest, Unknowns};
 use super::walked::{self, MeanNoise, Reading, Walked};
-use crate::reference::data::{Stretch, turned};
+use crate::reference::data::Stretch;
 use crate::reference::solve::Block;
 
 /// Gravity in a turn is averaged over this, s, as on the device.
@@ -167,8 +167,7 @@ fn residual(legs: &[Leg], x: &[f64], from: Rest, to: Rest, gravity: f64, duratio
             for interval in group {
                 let dt_s = interval.dt_s;
                 let bias = biases[0] + (biases[1] - biases[0]) * ((since_s + 0.5 * dt_s) / duration_s);
-                let [a, b] = interval.rates.map(|rate| gyro * (rate - bias));
-                let turn = turned(&a, &b, dt_s);
+                let turn = interval.turned(&gyro, &bias);
                 let earth = UnitQuaternion::from_scaled_axis(earth * -dt_s);
                 if let Some(lever) = &lever {
                     let middle = rotation * turn.powf(0.5);

@@ -7,7 +7,7 @@ use tumble_core::calibration::Calibration;
 use tumble_core::face::Face;
 
 use super::Setting;
-use crate::reference::data::{Stretch, turned};
+use crate::reference::data::Stretch;
 use crate::reference::solve::Block;
 
 /// Gyroscope's correction by rows.
@@ -156,10 +156,10 @@ impl Unknowns {
 }
 
 fn carried(stretch: &Stretch, gyro: &Matrix3<f64>, bias: &Vector3<f64>) -> UnitQuaternion<f64> {
-    stretch.intervals.iter().fold(UnitQuaternion::identity(), |rotation, interval| {
-        let [a, b] = interval.rates.map(|rate| gyro * (rate - bias));
-        rotation * turned(&a, &b, interval.dt_s)
-    })
+    stretch
+        .intervals
+        .iter()
+        .fold(UnitQuaternion::identity(), |rotation, interval| rotation * interval.turned(gyro, bias))
 }
 
 fn levelled(rotation: UnitQuaternion<f64>, force: &Vector3<f64>) -> UnitQuaternion<f64> {
