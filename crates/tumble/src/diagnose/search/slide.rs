@@ -9,7 +9,7 @@ use super::ledger::Term;
 use crate::diagnose::twin::data::Deed;
 use crate::diagnose::twin::noise::Noise;
 
-/// σ over gravity: 0.1 to 60 mg, by 2.8.
+/// σ over gravity: 0.13 to 60 mg, by 1.67.
 const SIGMAS: [f64; 13] =
     [1.3e-4, 2.2e-4, 3.6e-4, 6e-4, 1e-3, 1.7e-3, 2.8e-3, 4.6e-3, 7.7e-3, 0.013, 0.022, 0.036, 0.06];
 /// τ, s: a jerk, a push, a box that slides through half a turn.
