@@ -51,6 +51,7 @@ fn wrong_lines_and_values() {
     check("short", with("0.015,0,0,0,0").as_bytes(), &["line 5", "5 fields", "names 7"]);
     check("same time", with("0.010,0,0,0,0,0,1").as_bytes(), &["line 5", "column t_s", "0.01 s after 0.01 s"]);
     check("time back", with("0.001,0,0,0,0,0,1").as_bytes(), &["line 5", "column t_s", "does not increase"]);
+    check("clock wraps", with("1.5,0,0,0,0,0,1\n0.001,0,0,0,0,0,1").as_bytes(), &["line 6", "column t_s", "wraps"]);
     check("below 1 µs", with("0.0100001,0,0,0,0,0,1").as_bytes(), &["line 5", "column t_s", "1 µs"]);
 }
 

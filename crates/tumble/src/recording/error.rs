@@ -123,6 +123,10 @@ pub enum Problem {
 }
 
 impl Problem {
+    /// A host that stamps what arrives is late by up to 0.4 s (docs/diagnosis.md §8), and its next stamp is not. What runs back by more, s,
+    /// is a clock that wraps, another recording, or lines out of order, and no diagnosis takes it.
+    pub const LATEST_S: f64 = 0.5;
+
     /// What the person can do.
     pub fn remedy(&self) -> String {
         match self {
@@ -136,6 +140,10 @@ impl Problem {
             Self::Truncated { .. } => "delete this last line, or copy the file again if more is missing".into(),
             Self::NotANumber { .. } => "repair or delete the line; numbers use a decimal point".into(),
             Self::NotFinite { .. } => "delete the line: a gap in time is allowed, an invalid reading is not".into(),
+            Self::TimeNotIncreasing { time_s, previous_s } if *time_s < previous_s - Self::LATEST_S => {
+                "if the clock wraps or starts anew here, add to every stamp from this line on what it lost; if this is another recording,                  give it a file of its own; else sort by time"
+                    .into()
+            }
             Self::TimeNotIncreasing { .. } => {
                 "delete repeated lines or sort by time, stamps at least 1 µs apart; `tumble diagnose` takes such a file and says what \
                  ails its stamps"

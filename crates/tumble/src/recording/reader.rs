@@ -10,9 +10,6 @@ use super::{Metadata, Recording, Row, time_us, units};
 /// The columns of the contract that must be there.
 const NEEDED: [&str; 7] = ["t_s", "gx_dps", "gy_dps", "gz_dps", "ax_g", "ay_g", "az_g"];
 const TEMPERATURE: &str = "temp_c";
-/// A host that stamps what arrives is late by up to 0.4 s (docs/diagnosis.md §8), and its next stamp is not. What runs back by more
-/// is another recording, or lines out of order.
-const LATEST_S: f64 = 0.5;
 /// From a stamp to the next where that one is not later, s: told apart at 1 µs whatever the rounding.
 const APART_S: f64 = 2e-6;
 
@@ -121,7 +118,7 @@ impl Table<'_> {
             stamps_s.push(row.t_s);
             if let Err(problem) = in_time(&rows, &row) {
                 let before_s = rows.last().map_or(0.0, |row| row.t_s);
-                if self.stamps == Stamps::Increase || row.t_s < before_s - LATEST_S {
+                if self.stamps == Stamps::Increase || row.t_s < before_s - Problem::LATEST_S {
                     return Err(self.at(&record, Some("t_s"), problem));
                 }
                 row.t_s = before_s + APART_S;
