@@ -1,9 +1,8 @@
 //! Motion and sensor together: ask it for samples.
 
-use crate::effect::{Chain, Instant};
 use crate::error::SimError;
 use crate::motion::{Kinematics, Motion, MotionConfig};
-use crate::sensor::{Sample, Sensor, SensorConfig, Truth};
+use crate::sensor::{Ideal, Instant, Sample, Sensor, SensorConfig, Stages, Truth, Untouched};
 use crate::{EARTH_RATE_RAD_S, STANDARD_GRAVITY_MPS2};
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -40,15 +39,6 @@ impl WorldConfig {
     }
 }
 
-/// True angular rate and specific force in the box frame at the sensor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ideal {
-    /// Relative to inertial space, rad/s.
-    pub angular_rate_rad_s: Vector3<f64>,
-    /// m/s².
-    pub specific_force_mps2: Vector3<f64>,
-}
-
 /// A box with a sensor on a table, and hands that move it.
 #[derive(Debug, Clone)]
 pub struct World {
@@ -60,7 +50,6 @@ pub struct World {
     seed: u64,
     /// 1 but for the effect that says otherwise.
     pub(crate) earth_rate_share: f64,
-    pub(crate) effects: Chain,
 }
 
 impl World {
@@ -78,33 +67,26 @@ impl World {
             latitude_deg: config.latitude_deg,
             seed: config.seed,
             earth_rate_share: 1.0,
-            effects: Chain::default(),
         })
     }
 
     /// The sensor's sample at `t_s`, with all its errors. Ask at increasing times; each call is one sample of noise.
     pub fn sample(&mut self, t_s: f64) -> Sample {
-        let delay = self.sensor.config().delay;
-        if !self.effects.is_empty() {
-            return self.sample_with_effects(t_s);
-        }
-        let at_gyro = self.ideal(t_s - delay.gyro_s);
-        let at_accel = if delay.accel_s == delay.gyro_s { at_gyro } else { self.ideal(t_s - delay.accel_s) };
-        self.sensor.measure(t_s, &at_gyro.angular_rate_rad_s, &at_accel.specific_force_mps2)
+        self.sample_through(t_s, &mut Untouched)
     }
 
-    /// The same with what the effects add on the way.
-    fn sample_with_effects(&mut self, t_s: f64) -> Sample {
+    /// The same with what takes hold on the way.
+    pub(crate) fn sample_through(&mut self, t_s: f64, stages: &mut impl Stages) -> Sample {
         let delay = self.sensor.config().delay;
         let at_gyro = self.instant(t_s - delay.gyro_s);
         let at_accel = if delay.accel_s == delay.gyro_s { at_gyro } else { self.instant(t_s - delay.accel_s) };
         let ideal = Ideal {
-            angular_rate_rad_s: self.effects.ideal(&at_gyro).angular_rate_rad_s,
-            specific_force_mps2: self.effects.ideal(&at_accel).specific_force_mps2,
+            angular_rate_rad_s: stages.ideal(&at_gyro).angular_rate_rad_s,
+            specific_force_mps2: stages.ideal(&at_accel).specific_force_mps2,
         };
         let temperature_degc = self.sensor.config().thermal.at(t_s);
         let at = Instant { t_s, ideal, temperature_degc, ..at_gyro };
-        self.sensor.measure_with(&at, &mut self.effects)
+        self.sensor.measure_through(&at, stages)
     }
 
     fn instant(&self, t_s: f64) -> Instant {

@@ -5,7 +5,8 @@
 //! its ranges.
 
 use nalgebra::Vector3;
-use tumble_sim::effect::{EffectError, EffectTruth, inject};
+use tumble_sim::effect::{EffectError, inject};
+use tumble_sim::sensor::EffectTruth;
 use tumble_sim::sensor::Quantisation;
 use tumble_sim::{Effect, Sample};
 

@@ -26,8 +26,8 @@ struct Lever {
 }
 
 impl Model for Lever {
-    fn prepare(&mut self, config: &mut SchemeConfig) {
-        config.world.motion.shape.lever_b_m = self.cm / 100.0;
+    fn prepare(&mut self, config: &mut WorldConfig) {
+        config.motion.shape.lever_b_m = self.cm / 100.0;
     }
 
     fn parameters(&self) -> Vec<Parameter> {

@@ -1,9 +1,10 @@
 //! Biases that move of themselves: what gyro and accelerometer have in common.
 
-use super::kind::{Draw, Parameter};
-use super::model::{Instant, Model, Signal};
-use super::{DPS, MG};
+use super::kind::Draw;
+use super::model::Model;
+use super::units::{DPS, MG};
 use crate::rng::{Purpose, Rng};
+use crate::sensor::{Instant, Parameter, Signal};
 use nalgebra::Vector3;
 
 /// Which of the two.

@@ -26,8 +26,8 @@ struct Lag {
 }
 
 impl Model for Lag {
-    fn prepare(&mut self, config: &mut SchemeConfig) {
-        config.world.sensor.delay.accel_s += self.ms * 1e-3;
+    fn prepare(&mut self, config: &mut WorldConfig) {
+        config.sensor.delay.accel_s += self.ms * 1e-3;
     }
 
     fn shift(&self, samples: &mut [Sample]) {

@@ -39,8 +39,8 @@ impl GSensitivity {
 }
 
 impl Model for GSensitivity {
-    fn prepare(&mut self, config: &mut SchemeConfig) {
-        config.world.sensor.truth.gyro_g_sensitivity += self.matrix_si();
+    fn prepare(&mut self, config: &mut WorldConfig) {
+        config.sensor.truth.gyro_g_sensitivity += self.matrix_si();
         self.within_truth = true;
     }
 

@@ -4,13 +4,14 @@
 //! session rests half of its time and turns as much one way as the other, so that the median is the bias to within some
 //! noise, and a dead zone or an asymmetry lies about rest and not about the bias.
 
+use super::chain::Chain;
+use super::error::EffectError;
 use super::kind::{Scene, WIDEST};
-use super::model::{Chain, EffectTruth, Instant, Signal};
-use super::{DPS, Effect, EffectError};
+use super::sized::Effect;
+use super::units::DPS;
 use crate::STANDARD_GRAVITY_MPS2 as G;
 use crate::rng::{Purpose, Rng};
-use crate::sensor::{Quantisation, Sample};
-use crate::world::Ideal;
+use crate::sensor::{EffectTruth, Ideal, Instant, Quantisation, Sample, Signal, Stages};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Adds effects to samples. With `ranges`, readings stay whole counts.
@@ -49,6 +50,17 @@ pub fn inject(
     }
     chain.stream(samples, &scene.ranges);
     Ok(chain.truths())
+}
+
+impl Effect {
+    /// Adds it to samples of a real sensor; see [`inject`].
+    ///
+    /// # Errors
+    /// As [`inject`].
+    pub fn inject(&self, samples: &mut Vec<Sample>, seed: u64) -> Result<EffectTruth, EffectError> {
+        let truths = inject(core::slice::from_ref(self), samples, None, seed)?;
+        truths.into_iter().next().ok_or(EffectError::NotInjectable { id: self.id() })
+    }
 }
 
 /// What the sensor's rounding may have taken away: even over one count, as it is where noise is not much below one.

@@ -5,34 +5,6 @@ use crate::rng::Rng;
 use crate::sensor::Quantisation;
 use core::fmt;
 use nalgebra::Vector3;
-use serde::Serialize;
-
-/// One number that was drawn for an effect.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Parameter {
-    /// What it is, in `snake_case`.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Its unit.
-    pub unit: &'static str,
-}
-
-impl Parameter {
-    /// A parameter of this name.
-    pub fn new(name: impl Into<String>, value: f64, unit: &'static str) -> Self {
-        Self { name: name.into(), value, unit }
-    }
-
-    /// The three components of a vector: `name_x`, `name_y`, `name_z`.
-    pub fn xyz(name: &str, vector: &Vector3<f64>, unit: &'static str) -> Vec<Self> {
-        ["x", "y", "z"]
-            .iter()
-            .zip(vector.iter())
-            .map(|(axis, v)| Self::new(format!("{name}_{axis}"), *v, unit))
-            .collect()
-    }
-}
 
 /// What an effect's magnitude may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,6 +67,13 @@ pub struct Kind {
     /// Whether it can be added to a recording of a real sensor.
     pub injects: bool,
     pub(super) make: fn(&mut Draw) -> Box<dyn Model>,
+}
+
+impl Kind {
+    /// What its magnitude must be, in words.
+    pub(super) fn allowed(&self) -> String {
+        format!("{} {}, {}", self.values, self.unit, self.meaning)
+    }
 }
 
 /// When and how a recording is made: what an effect's times and counts are drawn from.

@@ -26,8 +26,8 @@ struct Wobble {
 }
 
 impl Model for Wobble {
-    fn prepare(&mut self, config: &mut SchemeConfig) {
-        config.world.motion.hands.wobble_deg = self.deg;
+    fn prepare(&mut self, config: &mut WorldConfig) {
+        config.motion.hands.wobble_deg = self.deg;
     }
 
     fn parameters(&self) -> Vec<Parameter> {

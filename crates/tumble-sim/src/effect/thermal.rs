@@ -1,13 +1,13 @@
 //! Parameters that follow the die's temperature, and a temperature that moves.
 
-use super::EffectError;
 use super::bias::Triad;
-use super::kind::{Draw, Parameter};
-use super::model::{Instant, Model, Signal};
-use super::{PPM, kind::Scene};
+use super::error::EffectError;
+use super::kind::{Draw, Scene};
+use super::model::Model;
+use super::units::PPM;
 use crate::rng::Rng;
-use crate::scheme::SchemeConfig;
-use crate::sensor::{Sample, Thermal};
+use crate::sensor::{Instant, Parameter, Sample, Signal, Thermal};
+use crate::world::WorldConfig;
 use nalgebra::Vector3;
 
 /// A recording whose temperature moves by less keeps its own; otherwise the effect brings one, °C.
@@ -80,6 +80,7 @@ pub(super) struct Slope {
     follows: Follows,
     slope: Vector3<f64>,
     swing: Swing,
+    duration_s: f64,
     /// Mean of a real recording's temperatures, about which it is changed; a simulated sensor has its own.
     real_mean_degc: Option<f64>,
 }
@@ -87,7 +88,7 @@ pub(super) struct Slope {
 impl Slope {
     pub(super) fn draw(triad: Triad, follows: Follows, draw: &mut Draw) -> Box<dyn Model> {
         let (slope, swing) = (draw.spread(), Swing::draw(draw));
-        Box::new(Self { triad, follows, slope, swing, real_mean_degc: None })
+        Box::new(Self { triad, follows, slope, swing, duration_s: draw.scene.duration_s, real_mean_degc: None })
     }
 
     /// SI per °C, or relative.
@@ -98,10 +99,9 @@ impl Slope {
 }
 
 impl Model for Slope {
-    fn prepare(&mut self, config: &mut SchemeConfig) {
-        let duration_s = config.duration_s();
-        let thermal = &mut config.world.sensor.thermal;
-        self.swing.apply(thermal, duration_s);
+    fn prepare(&mut self, config: &mut WorldConfig) {
+        let thermal = &mut config.sensor.thermal;
+        self.swing.apply(thermal, self.duration_s);
         let slope = match (self.triad, self.follows) {
             (Triad::Gyro, Follows::Bias) => &mut thermal.gyro_bias_per_degc,
             (Triad::Gyro, Follows::Scale) => &mut thermal.gyro_scale_per_degc,

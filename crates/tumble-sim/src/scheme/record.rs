@@ -29,20 +29,17 @@ impl SchemeConfig {
         self.check()?;
         let mut config = self.clone();
         let mut chain = Effect::chain(&self.effects, self.scene(), self.world.seed);
-        chain.prepare(&mut config);
+        chain.prepare(&mut config.world);
         let mut world = World::new(&config.world)?;
         chain.before(&mut world);
         let end_s = plan::queue(&config, &mut world);
         chain.after(&mut world);
-        world.effects = chain;
-        let samples = config.samples(&mut world, end_s);
+        let samples = config.samples(&mut world, &mut chain, end_s);
         let mut samples = averaged(samples, config.averaged, config.world.sensor.quantisation);
         let mut truth = world.truth()?;
-        let mut chain: Chain = core::mem::take(&mut world.effects);
         chain.stream(&mut samples, &self.scene().ranges);
         truth.effects = chain.truths();
         let rate_hz = chain.rate_hz().unwrap_or(self.scene().rate_hz);
-        world.effects = chain;
         Ok(Recording { samples, rate_hz, truth, world })
     }
 
@@ -56,12 +53,12 @@ impl SchemeConfig {
         }
     }
 
-    fn samples(&self, world: &mut World, end_s: f64) -> Vec<Sample> {
+    fn samples(&self, world: &mut World, chain: &mut Chain, end_s: f64) -> Vec<Sample> {
         let rate_hz = self.world.sensor.rate_hz;
         let true_rate_hz = rate_hz * (1.0 + self.clock.rate_error);
         let count = (end_s * true_rate_hz).floor() as usize + 1;
         let sample = |k: usize| {
-            let sample = world.sample(k as f64 / true_rate_hz);
+            let sample = world.sample_through(k as f64 / true_rate_hz, chain);
             match self.clock.stamps {
                 Stamps::True => sample,
                 Stamps::Nominal => Sample { t_s: k as f64 / rate_hz, ..sample },

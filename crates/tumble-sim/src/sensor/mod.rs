@@ -4,23 +4,26 @@
 //! frame; `b(t) = b + ramp·t + slope·ΔT + random part`.
 
 mod config;
+mod drawn;
 mod drift;
+mod instant;
 mod noise;
 mod quantise;
 mod triad;
 mod truth;
 
 pub use config::{Delay, Noise, SensorConfig, SensorTruth, Sheet};
+pub use drawn::{EffectTruth, Parameter};
 pub use drift::{BiasDrift, Drift, Thermal, Wander};
+pub use instant::{Ideal, Instant, Signal};
+pub(crate) use instant::{Stages, Untouched};
 pub use noise::ShapedNoise;
 pub use quantise::Quantisation;
 pub use triad::{PaperAngles, Triad};
 pub use truth::{AccelTruth, FrameTruth, GyroTruth, SettingTruth, Truth};
 
-use crate::effect::{Chain, Instant, Signal};
 use crate::error::SimError;
 use crate::rng::{Purpose, Rng};
-use crate::world::Ideal;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// One sample as the sensor gives it.
@@ -94,11 +97,11 @@ impl Sensor {
             temperature_degc: self.config.thermal.at(t_s),
             rotation_n_from_b: UnitQuaternion::identity(),
         };
-        self.measure_with(&at, &mut Chain::default())
+        self.measure_through(&at, &mut Untouched)
     }
 
-    /// The same with effects between the linear model and the noise, and between the noise and the rounding.
-    pub(crate) fn measure_with(&mut self, at: &Instant, effects: &mut Chain) -> Sample {
+    /// The same with what takes hold between the linear model and the noise, and between the noise and the rounding.
+    pub(crate) fn measure_through(&mut self, at: &Instant, stages: &mut impl Stages) -> Sample {
         let t_s = at.t_s;
         let (rate, force) = (&at.ideal.angular_rate_rad_s, &at.ideal.specific_force_mps2);
         let (first_s, last_s) = self.span_s.unwrap_or((t_s, t_s));
@@ -110,11 +113,11 @@ impl Sensor {
             angular_rate_rad_s: gyro.distort(rate) + self.config.truth.gyro_g_sensitivity * force + gyro_random,
             specific_force_mps2: accel.distort(force) + accel_random,
         };
-        effects.analog(at, &mut signal);
+        stages.analog(at, &mut signal);
         signal.angular_rate_rad_s += self.gyro_noise.step(&mut self.rng);
         signal.specific_force_mps2 += self.accel_noise.step(&mut self.rng);
         let temperature_degc = self.config.thermal.at(t_s) + self.config.noise.temperature_degc * self.rng.normal();
-        effects.converter(at, &mut signal);
+        stages.converter(at, &mut signal);
         let Signal { angular_rate_rad_s: rate, specific_force_mps2: force } = signal;
         let range = self.config.quantisation;
         Sample {

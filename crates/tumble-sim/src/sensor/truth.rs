@@ -1,7 +1,7 @@
 //! The truth in the contract's convention: `ideal = correction · (raw − bias)`, SI, in the box's and in the accelerometer's frame.
 
 use super::config::SensorTruth;
-use crate::effect::EffectTruth;
+use super::drawn::EffectTruth;
 use crate::error::SimError;
 use crate::motion::MotionConfig;
 use nalgebra::{Matrix3, Vector3};

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use serde::Serialize;
 use tumble_sim::Effect;
-use tumble_sim::effect::EffectTruth;
+use tumble_sim::sensor::EffectTruth;
 
 use super::{Refusal, effects, output};
 use crate::conceal::Seal;
