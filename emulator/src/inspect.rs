@@ -90,7 +90,7 @@ impl Board {
 
     fn stack(&self) -> Option<(u64, u64)> {
         let ram = RAM_BASE..=RAM_BASE + RAM_BYTES as u64;
-        let end = ["__euninit", "__ebss"].iter().find_map(|name| self.symbols.get(name).ok())?;
+        let end = ["_stack_end", "__euninit", "__ebss"].iter().find_map(|name| self.symbols.get(name).ok())?;
         let start = self.symbols.get("_stack_start").ok()?;
         (ram.contains(&end) && ram.contains(&start) && end < start).then_some(((end + 3) & !3, start))
     }

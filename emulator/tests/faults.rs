@@ -120,6 +120,17 @@ fn wrong_words_are_named_with_the_right_ones() {
     assert_eq!(stage.board.flash_operations(), (0, 0));
 }
 
+/// A stack that grows too far meets nothing that it could overwrite.
+#[test]
+fn below_the_stack_there_is_no_memory() {
+    let mut stage = stage(None);
+    acts::boot(&mut stage).expect("it says hello");
+    let end = stage.board.symbol("_stack_end").expect("memory.x's symbol");
+    let (used, size) = stage.board.stack_high_water().expect("memory.x's symbols");
+    assert!((1000..size).contains(&used) && stage.board.read_memory(end, 4).is_some(), "{used} of {size}");
+    assert_eq!(stage.board.read_memory(end - 4, 4), None);
+}
+
 /// The program runs astray (its stack is overwritten): the watchdog starts it anew, and it says so.
 #[test]
 fn a_program_run_astray_is_started_anew() {

@@ -15,8 +15,10 @@ use crate::{Failure, toolchain};
 pub struct Size {
     /// Code, constants and the initial values of variables.
     pub flash: u64,
-    /// Variables; the stack has what is left.
+    /// Variables.
     pub ram: u64,
+    /// What the linker script gives to the stack.
+    pub stack: u64,
 }
 
 /// The STM32F411CE's memories (RM0383 §2.3), of which `memory.x` keeps the last two flash sectors for the parameters.
@@ -44,15 +46,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 pub fn report(board: Board, image: &Path) -> Result<Size, Failure> {
     let size = measure(image)?;
     println!(
-        "{}: flash {} of {FLASH_IMAGE} bytes ({:.1} %), RAM {} of {RAM} bytes ({:.1} %), {} left for the stack",
+        "{}: flash {} of {FLASH_IMAGE} bytes ({:.1} %), variables {} of {} bytes of RAM ({:.1} %) beside a stack of {}",
         board.feature(),
         size.flash,
         percent(size.flash, FLASH_IMAGE),
         size.ram,
-        percent(size.ram, RAM),
-        RAM.saturating_sub(size.ram),
+        RAM - size.stack,
+        percent(size.ram, RAM - size.stack),
+        size.stack,
     );
-    if size.flash > FLASH_IMAGE || size.ram > RAM {
+    if size.flash > FLASH_IMAGE || size.ram + size.stack > RAM {
         return Err(format!("{} does not fit on the board", image.display()).into());
     }
     Ok(size)
@@ -65,8 +68,9 @@ fn percent(part: u64, whole: u64) -> f64 {
 /// What is loaded to flash takes its size in the file; what lives in RAM takes its size in memory.
 fn measure(image: &Path) -> Result<Size, Failure> {
     let data = read(image)?;
+    let stack = stack(image, &data)?;
     let sum = |data: &[u8]| {
-        let mut size = Size::default();
+        let mut size = Size { stack, ..Size::default() };
         let segments = FileHeader32::<LittleEndian>::parse(data)?.program_headers(LittleEndian, data)?;
         for segment in segments.iter().filter(|segment| segment.p_type(LittleEndian) == PT_LOAD) {
             add(&mut size, segment, LittleEndian);
@@ -74,6 +78,23 @@ fn measure(image: &Path) -> Result<Size, Failure> {
         Ok::<_, object::read::Error>(size)
     };
     sum(&data).map_err(|error| unreadable(image, &error))
+}
+
+/// Bytes of stack, which must end where the RAM begins: what grows beyond that faults, and overwrites nothing.
+fn stack(image: &Path, data: &[u8]) -> Result<u64, Failure> {
+    let ends = |data: &[u8]| {
+        let sections = FileHeader32::<LittleEndian>::parse(data)?.sections(LittleEndian, data)?;
+        let symbols = sections.symbols(LittleEndian, data, elf::SHT_SYMTAB)?;
+        let value = |wanted: &[u8]| {
+            let mut named = symbols.iter().filter(|symbol| symbol.name(LittleEndian, symbols.strings()) == Ok(wanted));
+            named.next().map(|symbol| u64::from(symbol.st_value(LittleEndian)))
+        };
+        Ok::<_, object::read::Error>((value(b"_stack_end"), value(b"_stack_start")))
+    };
+    match ends(data).map_err(|error| unreadable(image, &error))? {
+        (Some(RAM_ORIGIN), Some(start)) if (RAM_ORIGIN..RAM_ORIGIN + RAM).contains(&start) => Ok(start - RAM_ORIGIN),
+        _ => Err(format!("{}: the stack is not at the bottom of the RAM: see memory.x", image.display()).into()),
+    }
 }
 
 /// The large variables, the largest first.
