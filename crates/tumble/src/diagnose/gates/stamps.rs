@@ -127,8 +127,8 @@ fn clock_step(view: &View, dt: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Of spacings of one step and of two: are the long ones a clock's beats? A clock beats evenly, and motion goes on through a beat as through any
-/// other sample; over one that is missing it goes on twice as far, however evenly a reader loses them. Without motion one in a hundred is
-/// asked for.
+/// other sample; over one that is missing it goes on twice as far, however evenly a reader loses them. Where few beats lie in motion these must be
+/// even, and without motion one in a hundred is asked for.
 fn beats(view: &View, at: &[usize], count: usize) -> bool {
     let apart: Vec<f64> = at.windows(2).map(|pair| (pair[1] - pair[0]) as f64).collect();
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;
@@ -141,7 +141,8 @@ fn beats(view: &View, at: &[usize], count: usize) -> bool {
         .map(|i| (change(i), 0.5 * (change(i - 1) + change(i + 1))))
         .filter(|(_, beside)| *beside > MOVING * noise)
         .fold((0.0, 0.0, 0.0), |(count, a, b), (across, beside)| (count + 1.0, a + across, b + beside));
-    if moving >= LEAST_MOVING { (even || many) && across < 1.5 * beside } else { many }
+    let goes_on = across < 1.5 * beside;
+    if moving >= LEAST_MOVING { (even || many) && goes_on } else { many || (even && moving > 0.0 && goes_on) }
 }
 
 /// Spacings (to 10 µs) that at least [`LEAST_BEATS`] have, the commonest eight.
