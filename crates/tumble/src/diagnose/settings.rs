@@ -9,13 +9,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::{Variant, at_any_setting};
 use super::search::bench::Bench;
-use super::search::ledger::{Ledger, Term, posterior};
+use super::search::ledger::{Ledger, posterior};
 use super::search::shares::freed;
-use super::twin::column::Column;
+use super::search::sharpen::{TRIED, at_settings};
 use super::twin::rows::Class;
 
-/// Settings tried at a time: a pass with 72 columns is some 50 ms.
-const TRIED: usize = 24;
 /// Settings whose evidence is less than the best by more than this are as good as excluded: e⁻⁸.
 const EXCLUDED: f64 = 8.0;
 /// Grids, each as wide as what the last one left.
@@ -108,18 +106,11 @@ fn try_all(bench: &mut Bench, k: usize, at: fn(f64) -> Variant, low: f64, high: 
     let mut others = freed(bench.accepted_terms(&[k]));
     others.extend(bench.put_back(&accepted));
     let own = freed(bench.terms(accepted.candidate, accepted.variant, accepted.widening, &[]));
-    let known = bench.columns.len();
-    bench.columns.extend(settings.iter().flat_map(|setting| at(*setting).influences).map(Column::from));
     let first = others.len();
-    // Each setting has the same terms; its columns come after those of the one before.
-    let each = own.iter().cycle().zip(known..bench.columns.len()).map(|(term, column)| Term { column, ..*term });
-    let all: Vec<Term> = others.into_iter().chain(each).collect();
-    let (ledger, all) = bench.ledger_of(&all);
-    bench.columns.truncate(known);
-    let ledger = ledger.believing(Class::Closure);
-    let (beside, each) = all.split_at(first);
-    let one = |(setting, terms): (f64, &[Term])| {
-        let fit = ledger.fit(&[beside, terms].concat());
+    let tried = at_settings(bench, at, &settings, &others, &own);
+    let ledger = tried.ledger.believing(Class::Closure);
+    let one = |(setting, terms): (f64, &Vec<_>)| {
+        let fit = ledger.fit(&[tried.beside.as_slice(), terms].concat());
         Tried {
             setting,
             evidence: fit.evidence,
@@ -127,7 +118,7 @@ fn try_all(bench: &mut Bench, k: usize, at: fn(f64) -> Variant, low: f64, high: 
             covariance: fit.covariance.view((first, first), (own.len(), own.len())).into_owned(),
         }
     };
-    settings.into_iter().zip(each.chunks_exact(own.len())).map(one).collect()
+    settings.into_iter().zip(&tried.each).map(one).collect()
 }
 
 fn mixture(tried: &[Tried]) -> Option<Settled> {

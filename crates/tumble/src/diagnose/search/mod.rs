@@ -10,6 +10,7 @@ pub mod null;
 pub mod restless;
 pub mod select;
 pub mod shares;
+pub mod sharpen;
 mod slide;
 pub mod unknown;
 pub mod wandering;

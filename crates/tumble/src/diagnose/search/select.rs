@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::bench::{Accepted, Bench, HEALTHY, WANDERING, with_walks};
 use super::ledger::{Ledger, Term, log_mean};
 use super::null;
+use super::sharpen::sharpen;
 use super::slide::slide;
 use crate::diagnose::numbers::walk_density;
 use crate::diagnose::twin::noise::{Noise, walk_floor};
@@ -134,7 +135,11 @@ fn challenge_walks(bench: &mut Bench, threshold: f64, progress: &mut dyn FnMut(&
     let more = bench.accepted.len().saturating_sub(kept.0.len());
     let better = settle_walks(bench).1 > evidence + threshold * more as f64;
     for (candidate, (variants, walk, absent)) in bench.candidates.iter_mut().zip(known) {
-        (candidate.variants, candidate.walk, candidate.absent) = (variants, walk, absent);
+        // What was struck out comes back; what was moved to its time stays there, for its columns did.
+        if candidate.variants.is_empty() {
+            candidate.variants = variants;
+        }
+        (candidate.walk, candidate.absent) = (walk, absent);
     }
     if better && !bench.accepted.is_empty() {
         // A walk may yet be there beside them.
@@ -167,6 +172,7 @@ fn accept(bench: &mut Bench, best: &Score, threshold: f64) -> bool {
     if let Some((gyro, ..)) = bench.candidates[candidate].walk {
         bench.set_wander(gyro, best.noise.walk(gyro));
     }
+    sharpen(bench);
     bench.refit();
     let (noise, after) = settle_walks(bench);
     bench.twin.noise = noise;
