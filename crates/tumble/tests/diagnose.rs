@@ -129,6 +129,40 @@ fn an_effect_of_the_rate_is_taken_out_of_a_further_recording_too() {
     assert!(other.after < 0.9 * other.before && other.gain > 50.0, "{other:?}");
 }
 
+/// A clean session of poses whose gyroscope's bias jumps in the middle of a rest, and when.
+fn jumps_at_rest(by_dps: [f64; 2]) -> (Recording, f64) {
+    let config = SchemeConfig::realistic(Scheme::MultiPose { poses: 17 }, 4);
+    let world = config.record().expect("a valid configuration").world;
+    let moved = (600..).map(|k| 0.1 * f64::from(k)).find(|t_s| !world.motion_idle_at(*t_s)).expect("it is moved");
+    let later = (0..).map(|k| moved + 0.1 * f64::from(k)).skip_while(|t_s| !world.motion_idle_at(*t_s));
+    let rest: Vec<f64> = later.take_while(|t_s| world.motion_idle_at(*t_s)).collect();
+    let jumped_s = rest[rest.len() / 2];
+    let mut recording = made(&config).0;
+    for row in recording.rows.iter_mut().filter(|row| row.t_s > jumped_s) {
+        row.gyro_dps[0] += by_dps[0];
+        row.gyro_dps[1] += by_dps[1];
+    }
+    (recording, jumped_s)
+}
+
+/// 0.25 °/s is found between the instants at which the search looks first; 1 °/s and 4 °/s are more than rests may differ by, and what
+/// follows would pass for one steady turn.
+#[test]
+fn a_step_in_the_middle_of_a_rest_is_a_step_however_large() {
+    for (by_dps, within_s) in [([0.15, -0.2], 0.3), ([0.6, -0.8], 2.5), ([-3.5, 2.0], 2.5)] {
+        let (recording, jumped_s) = jumps_at_rest(by_dps);
+        let diagnosis = ask(&recording, &[]).diagnosis;
+        let names: Vec<_> = diagnosis.effects.iter().map(|effect| effect.id.as_str()).collect();
+        assert_eq!((diagnosis.verdict, &names[..]), (Verdict::EffectFound, &["gyro_bias_step"][..]), "{diagnosis:?}");
+        let number = |name: &str| {
+            let all = &diagnosis.effects[0].parameters;
+            all.iter().find(|parameter| parameter.name == name).map(|parameter| parameter.value).expect("a number")
+        };
+        assert!((number("x") - by_dps[0]).abs() < 0.03 && (number("y") - by_dps[1]).abs() < 0.03, "{diagnosis:?}");
+        assert!((number("at") - jumped_s).abs() < within_s, "{} for {jumped_s} s", number("at"));
+    }
+}
+
 #[test]
 fn what_is_not_in_the_catalogue_is_unknown() {
     let (recording, _) = recording(Scheme::Double, 7, Some("gyro_g_sensitivity=0.08"));

@@ -69,9 +69,10 @@ fn take(recording: &Recording, options: &Options, without_moves: bool) -> Intake
         let segments = settled.tape.segments().iter().enumerate();
         masked.extend(segments.filter(|(_, segment)| matches!(segment.kind, Kind::Hand)).map(|(number, _)| number));
     }
-    if !gated.repaired.is_empty() || gated.remap.is_some() {
+    if !gated.repaired.is_empty() || gated.remap.is_some() || gated.leap.is_some() {
         repair(&mut samples, &mut readings, &gated);
         settled = Session { readings: &readings, origin_s, lost, conditions }.settle(&mut |_| {});
+        masked.extend(leapt(&samples, &settled, &gated));
     }
     let remarks = remarks(&settled, lost);
     let prepared = prepare_settled(samples, &settled, conditions, &masked).map_err(|why| why.0);
@@ -101,6 +102,16 @@ fn masked(gated: &Gated) -> Vec<usize> {
     lost.flat_map(|found| found.place.segments.iter().copied()).collect()
 }
 
+/// Motions in which the bias may have jumped, of the repaired recording.
+fn leapt(samples: &[Raw], settled: &Settled, gated: &Gated) -> Vec<usize> {
+    let Some(leap) = &gated.leap else { return Vec::new() };
+    let us = |index: usize| (samples[index.min(samples.len() - 1)].t_s * 1e6) as u64;
+    let (from_us, to_us) = (us(leap.within.start), us(leap.within.end));
+    let segments = settled.tape.segments().iter().enumerate();
+    let touched = segments.filter(|(_, segment)| segment.start_us < to_us && segment.end_us > from_us);
+    touched.filter(|(_, segment)| !matches!(segment.kind, Kind::Still { .. })).map(|(number, _)| number).collect()
+}
+
 /// Puts neighbours' means for samples that are no measurements, and axes and scales right.
 pub fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
     for &index in &gated.repaired {
@@ -117,6 +128,9 @@ pub fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
             raw.rate = rate * raw.rate;
             raw.force = force * raw.force;
         }
+    }
+    if let Some(leap) = &gated.leap {
+        samples[(leap.within.start + leap.within.end) / 2..].iter_mut().for_each(|raw| raw.rate -= leap.by);
     }
     for (reading, raw) in readings.iter_mut().zip(samples.iter()) {
         reading.sample.angular_rate_rad_s = raw.rate.cast();

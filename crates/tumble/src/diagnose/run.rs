@@ -15,7 +15,7 @@ use super::second;
 use crate::recording::Recording;
 
 /// Found by gates, and yet no distortion of the samples: the physics is to be searched as ever.
-const HARMLESS: [&str; 3] = ["vibration_line", "spin_axis_wobble", "incomplete_turn"];
+const HARMLESS: [&str; 4] = ["vibration_line", "spin_axis_wobble", "incomplete_turn", "gyro_bias_step"];
 
 /// Hears what is being done, and which share of all is done.
 pub type Progress<'a> = dyn FnMut(&str, f32) + 'a;

@@ -10,6 +10,7 @@ mod coarse;
 mod frozen;
 mod gaps;
 mod hole;
+mod leap;
 mod line;
 mod mapping;
 mod pairs;
@@ -29,6 +30,7 @@ use super::diagnosis::{Found, Limit};
 use super::twin::data::Raw;
 use crate::recording::{Inference, Recording};
 pub use aliasing::in_moves;
+use leap::Leap;
 use spectrum::Spectra;
 use tell::Outcome;
 use tumble_core::tape::Segment;
@@ -68,6 +70,8 @@ pub struct Gated {
     /// A constant matrix that raw rates (first) and forces (second) must be multiplied by before anything fits: axis
     /// mapping and full scale.
     pub remap: Option<(nalgebra::Matrix3<f64>, nalgebra::Matrix3<f64>)>,
+    /// The gyroscope's bias jumped by more than rests may differ.
+    pub leap: Option<Leap>,
     /// Structural effects that what was found here imitates: they are not to be named.
     pub imitated: Vec<String>,
     /// Detection limits.
@@ -108,6 +112,9 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.look_at_stamps(&view);
     let torn = gated.look_at_spikes(&view);
     gated.look_at_values(&view);
+    let (leap, by) = leap::examine(&view);
+    gated.leap = by.filter(|_| !gated.hides(&leap));
+    gated.take(leap);
     gated.look_at_spectra(&view, torn);
     gated.take(aliasing::examine(&view));
     gated.look_at_rotation(&view);
