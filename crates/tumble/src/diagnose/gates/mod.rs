@@ -112,9 +112,7 @@ pub fn examine(scene: &Scene) -> Gated {
     gated.look_at_stamps(&view);
     let torn = gated.look_at_spikes(&view);
     gated.look_at_values(&view);
-    let (leap, by) = leap::examine(&view);
-    gated.leap = by.filter(|_| !gated.hides(&leap));
-    gated.take(leap);
+    gated.look_for_a_leap(&view);
     gated.look_at_spectra(&view, torn);
     gated.take(aliasing::examine(&view));
     gated.look_at_rotation(&view);
@@ -192,6 +190,16 @@ impl Gated {
         self.take(mapped.axes);
         self.take(mapped.scale);
         self.remap = mapped.remap.filter(|_| !hidden);
+    }
+
+    /// Means of readings that are torn, coarse, frozen or zeroed differ from rest to rest of themselves; stamps do them no harm.
+    fn look_for_a_leap(&mut self, view: &View) {
+        let stamps = ["dropped_samples", "timestamp_jitter", "timestamp_quantization"];
+        if self.found.iter().all(|found| stamps.contains(&found.id.as_str())) {
+            let (leap, by) = leap::examine(view);
+            self.leap = by.filter(|_| !self.hides(&leap));
+            self.take(leap);
+        }
     }
 
     /// What swings at rest.
