@@ -73,6 +73,42 @@ fn a_steady_turn_before_any_rest_is_struck_out_once_a_rest_disproves_it() {
 }
 
 #[test]
+fn a_steady_turn_on_crooked_axes_or_a_lean_is_no_jump_of_the_bias() {
+    // Crooked axes show a tenth of the rate across gravity, which stands still; about a leaning axis gravity turns.
+    for (seed, rate) in [1.0, 3.0, 9.0].into_iter().enumerate() {
+        let crooked = segments(60.0, 1.0, seed as u64, |t| {
+            let turning = if t > 5.0 { rate } else { 0.0 };
+            (Vector3::new(1.0 + 0.1 * turning, -0.5, 2.0 + turning), up())
+        });
+        assert_eq!(stills(&crooked).len(), 1, "{rate} deg/s: {:?}", crooked.segments());
+        let leaning = segments(60.0, 1.0, seed as u64, |t| {
+            let (turning, angle) = if t > 5.0 { (rate, rate * DEGREE * (t - 5.0)) } else { (0.0, 0.0) };
+            (Vector3::new(1.0 + turning, -0.5, 2.0), Vector3::new(0.0, angle.sin(), angle.cos()) * 9.8)
+        });
+        assert!(stills(&leaning).iter().all(|still| still.end_us < 5_600_000), "{:?}", leaning.segments());
+        assert_eq!([&crooked, &leaning].map(|tape| tape.bias_jump_rad_s.norm()), [0.0; 2]);
+    }
+}
+
+#[test]
+fn a_bias_that_jumps_at_rest_is_told_and_taken_out() {
+    for (seed, jump) in [[0.7, 0.0, 0.0], [0.0, -1.5, 1.0], [3.0, 3.0, -3.0]].into_iter().enumerate() {
+        let bias =
+            |t: f64| Vector3::new(1.0, -0.5, 2.0) + if t > 10.0 { Vector3::from(jump) } else { Vector3::zeros() };
+        let tape = segments(20.0, 1.0, seed as u64, |t| (bias(t), up()));
+        let rests = stills(&tape);
+        assert_eq!(rests.len(), 2, "{jump:?}: {:?}", tape.segments());
+        assert!(rests.iter().all(|rest| rest.exclusion == Exclusion::None), "{jump:?}: {:?}", tape.segments());
+        assert!(rests[1].start_us < 13_000_000, "{jump:?}: {:?}", tape.segments());
+        let found = tape.bias_jump_rad_s.cast::<f64>() / DEGREE;
+        assert!((found - Vector3::from(jump)).amax() < 0.04, "{found} for {jump:?}");
+        // What is on the tape is as if nothing had happened.
+        let [before, after] = [rests[0], rests[1]].map(|rest| mean_rate(&tape, rest.first.into(), rest.end.into()));
+        assert!((after - before).amax() < 0.04 * DEGREE as f32, "{before} {after}");
+    }
+}
+
+#[test]
 fn trembling_like_the_noise_is_rest_and_shaking_is_not() {
     let tremor = |t: f64, dps: f64| (Vector3::new(dps * (55.0 * t).sin(), 0.0, dps * (70.0 * t).cos()), up());
     let quiet = segments(30.0, 1.0, 3, |t| tremor(t, if t > 10.0 { 0.15 } else { 0.0 }));

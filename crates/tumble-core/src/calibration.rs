@@ -188,6 +188,13 @@ pub enum Reason {
         /// rad/s.
         drift_rad_s: f32,
     },
+    /// The gyroscope's bias jumped within the session.
+    BiasJump {
+        /// 0–2, where it jumped most.
+        axis: u8,
+        /// rad/s.
+        jump_rad_s: f32,
+    },
     /// The box was called square, and its faces are not.
     CrookedBox {
         /// How far a face is from square, one sigma over the faces, rad.

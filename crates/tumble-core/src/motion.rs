@@ -5,6 +5,7 @@ pub mod grain;
 pub mod path;
 pub mod record;
 pub mod segmenter;
+pub mod standstill;
 pub mod stillness;
 
 pub use path::RevolutionCheck;

@@ -60,6 +60,8 @@ pub enum Exclusion {
     Redone,
     /// It turned steadily: what was first taken for rest disagrees with the rate of later rests.
     SteadyTurn,
+    /// The gyroscope's bias jumped in it.
+    BiasJump,
     /// It does not fit the rest.
     Outlier,
 }
@@ -122,6 +124,8 @@ pub struct Tape<const R: usize, const S: usize> {
     temperature_count: u32,
     /// How coarse the readings are that the records are sums of.
     pub grain: Grain,
+    /// By how much the gyroscope's bias has jumped since the first record, rad/s: what is put on the tape now is the sample's rate less this.
+    pub bias_jump_rad_s: Vector3<f32>,
 }
 
 impl<const R: usize, const S: usize> Default for Tape<R, S> {
@@ -142,6 +146,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
             temperature_sum_degc: 0.0,
             temperature_count: 0,
             grain: Grain::new(),
+            bias_jump_rad_s: Vector3::new(0.0, 0.0, 0.0),
         }
     }
 
@@ -155,6 +160,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
         self.temperature_sum_degc = 0.0;
         self.temperature_count = 0;
         self.grain = Grain::new();
+        self.bias_jump_rad_s = Vector3::zeros();
     }
 
     /// Number of records.

@@ -169,13 +169,15 @@ fn seconds(t_us: u64, origin_s: f64) -> f64 {
     ((origin_s * 1e6).round() + t_us as f64) / 1e6
 }
 
-fn why(exclusion: Exclusion) -> &'static str {
+/// Why a segment is not used; nothing for one that is.
+pub fn why(exclusion: Exclusion) -> &'static str {
     match exclusion {
         Exclusion::None => "",
         Exclusion::Clipped => "a reading stands at the end of its range",
         Exclusion::Gap => "samples are missing",
         Exclusion::Redone => "the person asked for this face again",
         Exclusion::SteadyTurn => "it turned steadily: its rate disagrees with that of later rests",
+        Exclusion::BiasJump => "the gyroscope's bias jumped in it",
         Exclusion::Outlier => "it does not fit the rest",
     }
 }

@@ -5,8 +5,9 @@
 //! the accelerometer that jump or warm up by 16 to 90.
 
 use tumble_core::estimate::Conditions;
+use tumble_core::tape::Exclusion;
 
-use crate::calibrate::Outcome;
+use crate::calibrate::{Outcome, why};
 use crate::diagnose::carry::CARRIED;
 use crate::diagnose::catalogue::STRUCTURAL;
 use crate::diagnose::diagnosis::{Found, Verdict};
@@ -22,7 +23,10 @@ pub fn look(recording: &Recording, conditions: Conditions, outcome: &mut Outcome
     let options = Options { without: Vec::new(), seed: 1, conditions: Some(conditions) };
     let diagnosis = diagnose(recording, &options, &mut progress).diagnosis;
     let carries_g = outcome.calibration.as_ref().is_some_and(|calibration| calibration.g_sensitivity.is_some());
-    let held = |id: &str| HELD.contains(&id) || (id == "gyro_g_sensitivity" && carries_g);
+    let jumped = outcome.segments.iter().any(|segment| segment.why == why(Exclusion::BiasJump));
+    let held = |id: &str| {
+        HELD.contains(&id) || (id == "gyro_g_sensitivity" && carries_g) || (id == "gyro_bias_step" && jumped)
+    };
     let structural = |id: &str| STRUCTURAL.iter().any(|effect| effect.card.id == id);
     for found in diagnosis.effects.iter().filter(|found| structural(&found.id) && !held(&found.id)) {
         outcome.warn(sentence(found));

@@ -20,8 +20,15 @@ const CHUNK: usize = 256;
 
 type SessionTape = Tape<RECORDS, SEGMENTS>;
 
-const EXCLUSIONS: [Exclusion; 6] =
-    [Exclusion::None, Exclusion::Clipped, Exclusion::Gap, Exclusion::Redone, Exclusion::SteadyTurn, Exclusion::Outlier];
+const EXCLUSIONS: [Exclusion; 7] = [
+    Exclusion::None,
+    Exclusion::Clipped,
+    Exclusion::Gap,
+    Exclusion::Redone,
+    Exclusion::SteadyTurn,
+    Exclusion::BiasJump,
+    Exclusion::Outlier,
+];
 
 /// What the host fills whenever the program arrives at [`bench_feed`].
 #[unsafe(no_mangle)]

@@ -112,6 +112,11 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     if lost > 0 {
         bench.warn(Reason::SamplesLost { samples: lost });
     }
+    let jump = tape.bias_jump_rad_s;
+    if jump != Vector3::zeros() {
+        let axis = jump.iamax();
+        bench.warn(Reason::BiasJump { axis: axis as u8, jump_rad_s: jump[axis] });
+    }
     let motion = estimate.noise.turn_scale.max(estimate.noise.hand_scale);
     if motion > MOTION_LIMIT {
         bench.warn(Reason::PoorFit { nis_per_dof: motion });

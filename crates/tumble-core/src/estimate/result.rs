@@ -11,6 +11,7 @@ use super::walk::still::EARTH_SIGMA;
 use super::wander::Found;
 use crate::calibration::{Calibration, Fit, Triad, TriadEstimate};
 use crate::motion::segmenter::mean_force;
+use crate::motion::standstill::RUN_S;
 use crate::tape::Tape;
 
 /// A number is "not observable" where the data bring less than 99 % of what is known of it.
@@ -35,6 +36,12 @@ impl<const S: usize> Estimator<S> {
         };
         let mut gyroscope = triad(&nominal.gyro, GYRO_BIAS);
         self.settle_bias(tape, nominal, &mut gyroscope, &mut covariance);
+        if tape.bias_jump_rad_s != Vector3::zeros() {
+            // The tape is less the jump, which the run that told it knows by its own noise and that of as short a rest.
+            gyroscope.triad.bias += tape.bias_jump_rad_s;
+            let sigma = libm::sqrtf(2.0 * self.noise.rate_density / RUN_S);
+            gyroscope.bias_sigma.apply(|each| *each = libm::hypotf(*each, sigma));
+        }
         let mut accelerometer = triad(&nominal.accel, 0);
         // Twelve comparisons leave more possible than such a sensor does (0.4 mg a session), so that it takes a likely walk.
         let walk = self.walk.pass.force_walk.found().filter(Found::probable);

@@ -120,7 +120,7 @@ impl<const S: usize> Walk<S> {
             self.end_visit();
         }
         self.pass.move_s = 0.0;
-        if matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap) {
+        if matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap | Exclusion::BiasJump) {
             self.pass.aligned = false;
             self.pass.hinge = None;
             self.end_visit();

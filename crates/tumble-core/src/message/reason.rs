@@ -19,6 +19,7 @@ impl Reason {
             Self::NotObservable { .. } => "not_observable",
             Self::Uncertain { .. } => "uncertain",
             Self::BiasDrift { .. } => "bias_drift",
+            Self::BiasJump { .. } => "bias_jump",
             Self::CrookedBox { .. } => "crooked_box",
             Self::LooseContact { .. } => "loose_contact",
             Self::SegmentExcluded { .. } => "segment_excluded",
@@ -72,6 +73,13 @@ impl Display for Reason {
                  minutes, out of draughts, and calibrate again.",
                 axis(usize::from(*i)),
                 degrees(*drift_rad_s)
+            ),
+            Self::BiasJump { axis: i, jump_rad_s } => write!(
+                f,
+                "The gyroscope's {} axis jumped by {:.2} degrees per second during the session. The biases are those after it. Keep the board \
+                 from knocks and draughts and check its supply; if it jumps again, its biases do not last.",
+                axis(usize::from(*i)),
+                degrees(*jump_rad_s)
             ),
             Self::CrookedBox { facet_rad } => write!(
                 f,

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 
 use super::block::{Accumulator, Block, Completed};
 use super::path::trace;
+use super::standstill::{Standstill, strike_turns};
 use super::stillness::{Excess, Stillness};
 use super::{MotionEvent, RevolutionCheck};
 use crate::face::Face;
@@ -35,6 +36,7 @@ enum State {
 pub struct Segmenter {
     accumulator: Accumulator,
     stillness: Stillness,
+    standstill: Standstill,
     state: State,
     first: usize,
     start_us: u64,
@@ -45,6 +47,7 @@ pub struct Segmenter {
     block_start_us: u64,
     moving_blocks: u32,
     disproof: u32,
+    jumped: bool,
     last_up: Option<Vector3<f32>>,
     visit: RevolutionCheck,
     full: bool,
@@ -56,6 +59,7 @@ impl Segmenter {
         Self {
             accumulator: Accumulator::new(),
             stillness: Stillness::new(tolerance),
+            standstill: Standstill::new(),
             state: State::Moving { quiet: 0, candidate_first: 0, candidate_us: 0 },
             first: 0,
             start_us: 0,
@@ -66,6 +70,7 @@ impl Segmenter {
             block_start_us: 0,
             moving_blocks: 0,
             disproof: 0,
+            jumped: false,
             last_up: None,
             visit: RevolutionCheck::new(),
             full: false,
@@ -117,7 +122,8 @@ impl Segmenter {
             self.block_start_us = sample.t_us;
         }
         tape.grain.see(sample);
-        let completed = self.accumulator.push(sample, clipped);
+        let less_jump = Sample { angular_rate_rad_s: sample.angular_rate_rad_s - tape.bias_jump_rad_s, ..*sample };
+        let completed = self.accumulator.push(&less_jump, clipped);
         if let Some(gap_s) = completed.gap_s {
             self.gap(sample, gap_s, tape, &mut events);
         }
@@ -153,6 +159,13 @@ impl Segmenter {
         }
         let Some(block) = &completed.block else { return Ok(()) };
         let excess = self.stillness.judge(block, matches!(self.state, State::Still { .. }));
+        let rest = self.stillness.resting_rate();
+        if let Some(jump) = self.standstill.step(block, self.block_start_us, &excess, rest) {
+            // What follows is put on the tape less the jump, and is held against the rests before as ever.
+            tape.bias_jump_rad_s += jump;
+            self.jumped = true;
+            self.stillness.interrupt();
+        }
         self.disprove(block, &excess, tape);
         let result = match self.state {
             State::Moving { .. } => self.while_moving(block, &excess, tape, events),
@@ -211,11 +224,18 @@ impl Segmenter {
         let face = Face::from_specific_force(&up);
         let resting = self.stillness.resting_rate().unwrap_or(block.mean_rate);
         let path = self.last_up.map(|from| trace(tape, self.first..first, &resting, &from, &up));
+        let jumped = core::mem::take(&mut self.jumped);
+        if jumped {
+            self.visit = RevolutionCheck::default();
+        }
         let kind = match (path, face) {
-            (Some(path), Some(face)) if path.on_table => Kind::OnTable { face, angle_rad: path.angle_rad },
+            (Some(path), Some(face)) if path.on_table && !jumped => Kind::OnTable { face, angle_rad: path.angle_rad },
             _ => Kind::Hand,
         };
         self.close(tape, kind, first, start_us)?;
+        if jumped && let Some(segment) = tape.segments_mut().last_mut() {
+            segment.exclusion = Exclusion::BiasJump;
+        }
         let _ = events.push(MotionEvent::StillBegan { face });
         if let Some(event) = self.visit.arrive(&kind, face) {
             let _ = events.push(event);
@@ -344,21 +364,14 @@ impl Segmenter {
         self.state = State::Moving { quiet: 0, candidate_first: end, candidate_us: sample.t_us };
     }
 
-    /// Two rests cannot differ by more than an offset drifts. Where a later one is quiet but for its mean rate, and lies
-    /// nearer to zero, the earlier was a steady turn: its stills are struck out.
+    /// Where a later rest is quiet but for its mean rate, and lies nearer to zero, the earlier ones may have been steady turns.
     fn disprove<const R: usize, const S: usize>(&mut self, block: &Block, excess: &Excess, tape: &mut Tape<R, S>) {
         let contradicts = excess.variance.max(excess.wander) <= 1.0 && excess.offset > 1.0;
         let nearer = self.stillness.resting_rate().is_some_and(|rest| block.mean_rate.norm() < rest.norm());
-        self.disproof = if contradicts && nearer { self.disproof + 1 } else { 0 };
-        if self.disproof < DISPROOF_BLOCKS {
-            return;
-        }
-        self.disproof = 0;
-        self.stillness.set_resting_rate(block.mean_rate);
-        for segment in tape.segments_mut() {
-            if matches!(segment.kind, Kind::Still { .. }) && segment.exclusion == Exclusion::None {
-                segment.exclusion = Exclusion::SteadyTurn;
-            }
+        self.disproof = if contradicts && nearer && !self.jumped { self.disproof + 1 } else { 0 };
+        if self.disproof == DISPROOF_BLOCKS && strike_turns(tape, &block.mean_rate) {
+            self.disproof = 0;
+            self.stillness.set_resting_rate(block.mean_rate);
         }
     }
 }

@@ -15,10 +15,10 @@ use super::block::Block;
 use crate::DEGREE_RAD;
 
 /// Upper 1e-6 point of the normal distribution.
-const Z: f32 = 4.753;
+pub(super) const Z: f32 = 4.753;
 /// Share of samples that count as independent: a 41 Hz low-pass sampled at 200 Hz passes noise of about 64 Hz equivalent
 /// bandwidth, so 2·64/200 = 0.64 at best; sensors with lower filters have less.
-const INDEPENDENT: f32 = 0.4;
+pub(super) const INDEPENDENT: f32 = 0.4;
 /// Admitted trembling over the sensor's noise.
 const TREMBLING: f32 = 3.0;
 /// No MEMS of this class is noisier at rest in its widest bandwidth (MPU-6050, low-pass off: 0.1 °/s, 8 mg).
@@ -29,7 +29,7 @@ const FORCE_CAP: f32 = 0.3;
 const RATE_FLOOR: f32 = 0.01 * DEGREE_RAD;
 const FORCE_FLOOR: f32 = 0.003;
 /// Zero offset before any rest is known: the MPU9250's sheet has ±5 °/s, its siblings up to twice that in practice.
-const UNKNOWN_OFFSET: f32 = 10.0 * DEGREE_RAD;
+pub(super) const UNKNOWN_OFFSET: f32 = 10.0 * DEGREE_RAD;
 /// Zero offset against the rest before: ±30 °/s over −40…85 °C (sheet) is 0.24 °/s a degree; two degrees at most lie
 /// between two rests.
 const KNOWN_OFFSET: f32 = 0.5 * DEGREE_RAD;

@@ -4,7 +4,7 @@ use tumble_core::calibration::Reason;
 use tumble_core::estimate::{Conditions, judge};
 use tumble_core::tape::Kind;
 
-use super::gates::{self, Gated, Scene};
+use super::gates::{self, Gated, Leap, Scene};
 use super::options::Options;
 use super::prepare::{Prepared, prepare_settled};
 use super::search::bench::Bench;
@@ -69,7 +69,7 @@ fn take(recording: &Recording, options: &Options, without_moves: bool) -> Intake
         let segments = settled.tape.segments().iter().enumerate();
         masked.extend(segments.filter(|(_, segment)| matches!(segment.kind, Kind::Hand)).map(|(number, _)| number));
     }
-    if !gated.repaired.is_empty() || gated.remap.is_some() || gated.leap.is_some() {
+    if !gated.repaired.is_empty() || gated.remap.is_some() || !gated.leaps.is_empty() {
         repair(&mut samples, &mut readings, &gated);
         settled = Session { readings: &readings, origin_s, lost, conditions }.settle(&mut |_| {});
         masked.extend(leapt(&samples, &settled, &gated));
@@ -104,21 +104,25 @@ fn masked(gated: &Gated) -> Vec<usize> {
 
 /// Motions in which the bias may have jumped, of the repaired recording.
 fn leapt(samples: &[Raw], settled: &Settled, gated: &Gated) -> Vec<usize> {
-    let Some(leap) = &gated.leap else { return Vec::new() };
     let us = |index: usize| (samples[index.min(samples.len() - 1)].t_s * 1e6) as u64;
-    let (from_us, to_us) = (us(leap.within.start), us(leap.within.end));
+    let within = |leap: &Leap| (us(leap.within.start), us(leap.within.end));
+    let leaps: Vec<(u64, u64)> = gated.leaps.iter().map(within).collect();
     let segments = settled.tape.segments().iter().enumerate();
-    let touched = segments.filter(|(_, segment)| segment.start_us < to_us && segment.end_us > from_us);
+    let touched = segments.filter(|(_, segment)| {
+        leaps.iter().any(|(from_us, to_us)| segment.start_us < *to_us && segment.end_us > *from_us)
+    });
     touched.filter(|(_, segment)| !matches!(segment.kind, Kind::Still { .. })).map(|(number, _)| number).collect()
 }
 
 /// Puts neighbours' means for samples that are no measurements, and axes and scales right.
 pub fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
-    for &index in &gated.repaired {
-        if index == 0 || index + 1 >= samples.len() {
+    // In order, so that the sample before is good by now; the one after may be the next of a run.
+    for (k, &index) in gated.repaired.iter().enumerate() {
+        let run = gated.repaired[k..].iter().zip(index..).take_while(|(one, next)| *one == next).count();
+        if index == 0 || index + run >= samples.len() {
             continue;
         }
-        let (before, after) = (samples[index - 1], samples[index + 1]);
+        let (before, after) = (samples[index - 1], samples[index + run]);
         let share = (samples[index].t_s - before.t_s) / (after.t_s - before.t_s).max(f64::MIN_POSITIVE);
         samples[index].rate = before.rate.lerp(&after.rate, share);
         samples[index].force = before.force.lerp(&after.force, share);
@@ -129,7 +133,7 @@ pub fn repair(samples: &mut [Raw], readings: &mut [Reading], gated: &Gated) {
             raw.force = force * raw.force;
         }
     }
-    if let Some(leap) = &gated.leap {
+    for leap in &gated.leaps {
         samples[(leap.within.start + leap.within.end) / 2..].iter_mut().for_each(|raw| raw.rate -= leap.by);
     }
     for (reading, raw) in readings.iter_mut().zip(samples.iter()) {

@@ -132,6 +132,14 @@ fn interval(readings: &[Reading], last: usize) -> Interval {
 }
 
 impl Stretch {
+    /// Adds a rate to all.
+    pub fn shift(&mut self, by: &Vector3<f64>) {
+        self.mean_rate += by;
+        for interval in &mut self.intervals {
+            interval.rates.iter_mut().chain([&mut interval.smooth_rate]).for_each(|rate| *rate += by);
+        }
+    }
+
     /// Is it a rest that counts?
     pub fn is_rest(&self) -> bool {
         self.segment.is_usable_still()
@@ -144,7 +152,7 @@ impl Stretch {
 
     /// Is rotation lost in it?
     pub fn is_broken(&self) -> bool {
-        matches!(self.segment.exclusion, Exclusion::Clipped | Exclusion::Gap)
+        matches!(self.segment.exclusion, Exclusion::Clipped | Exclusion::Gap | Exclusion::BiasJump)
     }
 }
 

@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use tumble_core::calibration::{Calibration, Fit, Frame, Triad, TriadEstimate};
 use tumble_core::estimate::sums::SegmentNoise;
 use tumble_core::estimate::{Conditions, Estimate, PARAMETERS};
+use tumble_core::tape::Exclusion;
 
 use crate::recording::Reading;
 use crate::settle::HostTape;
@@ -23,15 +24,26 @@ pub const CORRECTION_SIGMA: f64 = 0.06;
 /// Prior of an accelerometer bias, the device's, m/s².
 pub const ACCEL_BIAS_SIGMA: f64 = 0.8;
 
-/// The segments of a tape with their samples, less what the device found the gyroscope to feel of force: neither reference fits that anew.
-fn unfelt(tape: &HostTape, readings: &[Reading], device: &Calibration) -> Vec<Stretch> {
-    let Some(felt) = device.g_sensitivity else { return data::stretches(tape.segments(), readings) };
+/// The segments of a tape with their samples, less what the device found the gyroscope to feel of force and with the bias that it had at
+/// the end: neither reference fits these anew.
+fn plain(tape: &HostTape, readings: &[Reading], device: &Calibration) -> Vec<Stretch> {
     let mut readings = readings.to_vec();
-    for Reading { sample, .. } in &mut readings {
-        let force = device.accelerometer.triad.compensate(&sample.specific_force_mps2);
-        sample.angular_rate_rad_s -= felt.matrix * force;
+    if let Some(felt) = device.g_sensitivity {
+        for Reading { sample, .. } in &mut readings {
+            let force = device.accelerometer.triad.compensate(&sample.specific_force_mps2);
+            sample.angular_rate_rad_s -= felt.matrix * force;
+        }
     }
-    data::stretches(tape.segments(), &readings)
+    let mut stretches = data::stretches(tape.segments(), &readings);
+    for jumped in 0..stretches.len() {
+        let (before, after) = stretches.split_at_mut(jumped + 1);
+        let rests = before.iter().rfind(|one| one.is_rest()).zip(after.iter().find(|one| one.is_rest()));
+        if let Some((from, to)) = rests.filter(|_| before[jumped].segment.exclusion == Exclusion::BiasJump) {
+            let by = to.mean_rate - from.mean_rate;
+            before.iter_mut().for_each(|stretch| stretch.shift(&by));
+        }
+    }
+    stretches
 }
 
 /// [`batch::estimate`] over the segments of a tape.
@@ -42,7 +54,7 @@ pub fn batch(
     start: &Estimate,
     noise: &[SegmentNoise],
 ) -> Option<(Calibration, Covariance)> {
-    let stretches = unfelt(tape, readings, &start.calibration);
+    let stretches = plain(tape, readings, &start.calibration);
     let batch = batch::estimate(&stretches, conditions, start, noise, batch::MeanNoise::Exact)?;
     let fit = fit(&stretches, &batch.accel, conditions, &start.calibration.fit, batch.chi_square_per_dof as f32);
     let found = calibration([&batch.accel, &batch.gyro], conditions.frame(), fit, &start.calibration);
@@ -56,7 +68,7 @@ pub fn gravity(
     conditions: &Conditions,
     start: &Estimate,
 ) -> Option<(Calibration, Covariance)> {
-    let stretches = unfelt(tape, readings, &start.calibration);
+    let stretches = plain(tape, readings, &start.calibration);
     let (accel, gyro) = gravity::estimate(&stretches, conditions, &start.noise)?;
     let fit = fit(&stretches, &accel, conditions, &start.calibration.fit, f32::NAN);
     let found = calibration([&accel, &gyro], Frame::Accelerometer, fit, &start.calibration);

@@ -10,8 +10,15 @@ use tumble_sim::{Scheme, SchemeConfig};
 /// As in `bench-firmware/src/estimate.rs`.
 pub const CHUNK: usize = 256;
 type SessionTape = Tape<4096, 160>;
-const EXCLUSIONS: [Exclusion; 6] =
-    [Exclusion::None, Exclusion::Clipped, Exclusion::Gap, Exclusion::Redone, Exclusion::SteadyTurn, Exclusion::Outlier];
+const EXCLUSIONS: [Exclusion; 7] = [
+    Exclusion::None,
+    Exclusion::Clipped,
+    Exclusion::Gap,
+    Exclusion::Redone,
+    Exclusion::SteadyTurn,
+    Exclusion::BiasJump,
+    Exclusion::Outlier,
+];
 
 /// What is estimated.
 pub struct Session {

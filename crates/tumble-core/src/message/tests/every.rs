@@ -24,6 +24,7 @@ pub(super) fn reasons() -> Vec<Reason> {
         Reason::NotObservable { name: "gyro_correction_xy" },
         Reason::Uncertain { name: "gyro_correction_zz", sigma: 2e-3, limit: 1e-3 },
         Reason::BiasDrift { axis: 1, drift_rad_s: 0.001 },
+        Reason::BiasJump { axis: 2, jump_rad_s: -0.02 },
         Reason::CrookedBox { facet_rad: 0.008 },
         Reason::LooseContact { lean_rad: 0.003 },
         Reason::SegmentExcluded { segment: 7, nis_per_dof: 40.0 },

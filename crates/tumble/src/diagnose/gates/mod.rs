@@ -30,7 +30,7 @@ use super::diagnosis::{Found, Limit};
 use super::twin::data::Raw;
 use crate::recording::{Inference, Recording};
 pub use aliasing::in_moves;
-use leap::Leap;
+pub use leap::Leap;
 use spectrum::Spectra;
 use tell::Outcome;
 use tumble_core::tape::Segment;
@@ -71,7 +71,7 @@ pub struct Gated {
     /// mapping and full scale.
     pub remap: Option<(nalgebra::Matrix3<f64>, nalgebra::Matrix3<f64>)>,
     /// The gyroscope's bias jumped by more than rests may differ.
-    pub leap: Option<Leap>,
+    pub leaps: Vec<Leap>,
     /// Structural effects that what was found here imitates: they are not to be named.
     pub imitated: Vec<String>,
     /// Detection limits.
@@ -196,9 +196,11 @@ impl Gated {
     fn look_for_a_leap(&mut self, view: &View) {
         let stamps = ["dropped_samples", "timestamp_jitter", "timestamp_quantization"];
         if self.found.iter().all(|found| stamps.contains(&found.id.as_str())) {
-            let (leap, by) = leap::examine(view);
-            self.leap = by.filter(|_| !self.hides(&leap));
-            self.take(leap);
+            let (told, leaps) = leap::examine(view);
+            if !self.hides(&told) {
+                self.leaps = leaps;
+            }
+            self.take(told);
         }
     }
 

@@ -104,7 +104,7 @@ pub fn stretches(segments: &[Segment], samples: &[Raw], noise: &Noise) -> Vec<St
             number,
             deed: deed(segments, number, noise),
             samples: range,
-            broken: matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap),
+            broken: matches!(segment.exclusion, Exclusion::Clipped | Exclusion::Gap | Exclusion::BiasJump),
             excluded: segment.exclusion != Exclusion::None,
         })
     };
