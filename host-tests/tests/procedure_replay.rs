@@ -37,7 +37,7 @@ fn play(samples: &[Sample], wanted: Scheme) -> (Vec<Refused>, bool, Vector3<f32>
             }
         }
     }
-    (refused, session.is_computing(), session.tape().bias_jump_rad_s)
+    (refused, session.is_computing(), session.tape().bias_jumps.total_rad_s)
 }
 
 #[test]
@@ -56,16 +56,16 @@ fn so_is_one_with_single_turns() {
     }
 }
 
-/// The middle of the first rest after this sample: a second over which no rate moves by 0.6 °/s.
+/// Half-way through the first rest of two seconds or more after this sample, over which no rate moves by 0.6 °/s.
 fn resting_from(samples: &[Sample], first: usize) -> usize {
     let steady = |start: usize| {
-        let rates = samples[start..start + 200].iter().map(|sample| sample.angular_rate_rad_s);
+        let rates = samples[start..start + 400].iter().map(|sample| sample.angular_rate_rad_s);
         let (low, high) = rates.fold((Vector3::repeat(f32::MAX), Vector3::repeat(f32::MIN)), |(low, high), rate| {
             (low.inf(&rate), high.sup(&rate))
         });
         (high - low).amax() < 0.6 * DEGREE_RAD
     };
-    100 + (first..samples.len() - 200).find(|&start| steady(start)).expect("a rest")
+    350 + (first..samples.len() - 400).find(|&start| steady(start)).expect("a rest")
 }
 
 /// To the test of mean rates all that follows is one steady turn: the board waited for ever.
@@ -76,14 +76,16 @@ fn a_bias_that_jumps_does_not_keep_the_board_waiting() {
         let recorded = recorded(tumble_sim::Scheme::Double, seed);
         let at = resting_from(&recorded, recorded.len() / 2);
         // The person sees that it is not content and lets it lie for six seconds more.
-        let longer = (0..1200).map(|k| recorded[at - 80 + k % 160]);
+        let longer = (0..1200).map(|k| recorded[at - 250 + k % 250]);
         let jump = Vector3::from(jump_dps) * DEGREE_RAD;
         let after = longer.chain(recorded[at..].iter().copied());
         let after = after.map(|sample| Sample { angular_rate_rad_s: sample.angular_rate_rad_s + jump, ..sample });
         let stamped = recorded[..at].iter().copied().chain(after).zip(0u64..);
         let samples: Vec<Sample> = stamped.map(|(sample, k)| Sample { t_us: 1000 + 5000 * k, ..sample }).collect();
         let (refused, complete, found) = play(&samples, Scheme::Double);
-        assert!(complete && refused.is_empty(), "seed {seed}: {refused:?}");
+        // The rest that the jump ends was too short: it asks for a longer one, and gets it.
+        let held = refused.iter().all(|why| matches!(why, Refused::Hold { .. }));
+        assert!(complete && held && refused.len() < 2, "seed {seed}: {refused:?}");
         // Means of 2.5 s and 1.5 s at 0.01 °/s/√Hz: 10 mdps.
         assert!((found - jump).amax() < 0.05 * DEGREE_RAD, "seed {seed}: {found} for {jump}");
     }

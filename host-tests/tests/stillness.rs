@@ -1,7 +1,8 @@
 //! What counts as rest: noise does, a steady turn never, and a still holds nothing of the motion beside it.
 
 use nalgebra::Vector3;
-use tumble_core::motion::segmenter::{Segmenter, mean_rate};
+use tumble_core::motion::means::mean_rate;
+use tumble_core::motion::segmenter::Segmenter;
 use tumble_core::sample::Sample;
 use tumble_core::tape::{Exclusion, Kind, Segment, Tape};
 use tumble_sim::rng::{Purpose, Rng};
@@ -86,7 +87,7 @@ fn a_steady_turn_on_crooked_axes_or_a_lean_is_no_jump_of_the_bias() {
             (Vector3::new(1.0 + turning, -0.5, 2.0), Vector3::new(0.0, angle.sin(), angle.cos()) * 9.8)
         });
         assert!(stills(&leaning).iter().all(|still| still.end_us < 5_600_000), "{:?}", leaning.segments());
-        assert_eq!([&crooked, &leaning].map(|tape| tape.bias_jump_rad_s.norm()), [0.0; 2]);
+        assert_eq!([&crooked, &leaning].map(|tape| tape.bias_jumps.total_rad_s.norm()), [0.0; 2]);
     }
 }
 
@@ -100,7 +101,7 @@ fn a_bias_that_jumps_at_rest_is_told_and_taken_out() {
         assert_eq!(rests.len(), 2, "{jump:?}: {:?}", tape.segments());
         assert!(rests.iter().all(|rest| rest.exclusion == Exclusion::None), "{jump:?}: {:?}", tape.segments());
         assert!(rests[1].start_us < 13_000_000, "{jump:?}: {:?}", tape.segments());
-        let found = tape.bias_jump_rad_s.cast::<f64>() / DEGREE;
+        let found = tape.bias_jumps.total_rad_s.cast::<f64>() / DEGREE;
         assert!((found - Vector3::from(jump)).amax() < 0.04, "{found} for {jump:?}");
         // What is on the tape is as if nothing had happened.
         let [before, after] = [rests[0], rests[1]].map(|rest| mean_rate(&tape, rest.first.into(), rest.end.into()));

@@ -2,10 +2,11 @@
 
 pub mod block;
 pub mod grain;
+pub mod means;
 pub mod path;
 pub mod record;
 pub mod segmenter;
-pub mod standstill;
+pub(crate) mod standstill;
 pub mod stillness;
 
 pub use path::RevolutionCheck;

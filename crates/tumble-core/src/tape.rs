@@ -108,6 +108,42 @@ impl Segment {
     }
 }
 
+/// By how much the gyroscope's bias has jumped since the first record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BiasJumps {
+    /// All together, rad/s.
+    pub total_rad_s: Vector3<f32>,
+    /// The largest, rad/s.
+    pub largest_rad_s: Vector3<f32>,
+}
+
+impl BiasJumps {
+    /// None.
+    pub const fn new() -> Self {
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        Self { total_rad_s: zero, largest_rad_s: zero }
+    }
+
+    /// Takes one more, rad/s.
+    pub fn take(&mut self, by: &Vector3<f32>) {
+        self.total_rad_s += by;
+        if by.norm_squared() > self.largest_rad_s.norm_squared() {
+            self.largest_rad_s = *by;
+        }
+    }
+
+    /// Was there any?
+    pub fn any(&self) -> bool {
+        self.largest_rad_s != Vector3::zeros()
+    }
+}
+
+impl Default for BiasJumps {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// No room for another record or segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
@@ -124,8 +160,8 @@ pub struct Tape<const R: usize, const S: usize> {
     temperature_count: u32,
     /// How coarse the readings are that the records are sums of.
     pub grain: Grain,
-    /// By how much the gyroscope's bias has jumped since the first record, rad/s: what is put on the tape now is the sample's rate less this.
-    pub bias_jump_rad_s: Vector3<f32>,
+    /// What is put on the tape now is the sample's rate less the total of these.
+    pub bias_jumps: BiasJumps,
 }
 
 impl<const R: usize, const S: usize> Default for Tape<R, S> {
@@ -146,7 +182,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
             temperature_sum_degc: 0.0,
             temperature_count: 0,
             grain: Grain::new(),
-            bias_jump_rad_s: Vector3::new(0.0, 0.0, 0.0),
+            bias_jumps: BiasJumps::new(),
         }
     }
 
@@ -160,7 +196,7 @@ impl<const R: usize, const S: usize> Tape<R, S> {
         self.temperature_sum_degc = 0.0;
         self.temperature_count = 0;
         self.grain = Grain::new();
-        self.bias_jump_rad_s = Vector3::zeros();
+        self.bias_jumps = BiasJumps::new();
     }
 
     /// Number of records.

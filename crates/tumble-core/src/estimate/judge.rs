@@ -8,8 +8,8 @@ use super::noise;
 use crate::DEGREE_RAD;
 use crate::calibration::{AcceptedCalibration, Calibration, Judgement, Reason, Verdict};
 use crate::face::{Face, FaceSet};
+use crate::motion::means::{mean_force, mean_rate};
 use crate::motion::path::whole_turns;
-use crate::motion::segmenter::{mean_force, mean_rate};
 use crate::tape::{Exclusion, Kind, Segment, Tape};
 
 /// A correction's diagonal is 1 within 3 % and its other elements 0 within 2 % (sheet), a chip sits askew by at most 3°;
@@ -112,8 +112,8 @@ fn warn_of_the_session<const R: usize, const S: usize>(
     if lost > 0 {
         bench.warn(Reason::SamplesLost { samples: lost });
     }
-    let jump = tape.bias_jump_rad_s;
-    if jump != Vector3::zeros() {
+    if tape.bias_jumps.any() {
+        let jump = tape.bias_jumps.largest_rad_s;
         let axis = jump.iamax();
         bench.warn(Reason::BiasJump { axis: axis as u8, jump_rad_s: jump[axis] });
     }

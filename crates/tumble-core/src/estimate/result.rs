@@ -10,7 +10,7 @@ use super::state::Block;
 use super::walk::still::EARTH_SIGMA;
 use super::wander::Found;
 use crate::calibration::{Calibration, Fit, Triad, TriadEstimate};
-use crate::motion::segmenter::mean_force;
+use crate::motion::means::mean_force;
 use crate::motion::standstill::RUN_S;
 use crate::tape::Tape;
 
@@ -36,9 +36,9 @@ impl<const S: usize> Estimator<S> {
         };
         let mut gyroscope = triad(&nominal.gyro, GYRO_BIAS);
         self.settle_bias(tape, nominal, &mut gyroscope, &mut covariance);
-        if tape.bias_jump_rad_s != Vector3::zeros() {
+        if tape.bias_jumps.any() {
             // The tape is less the jump, which the run that told it knows by its own noise and that of as short a rest.
-            gyroscope.triad.bias += tape.bias_jump_rad_s;
+            gyroscope.triad.bias += tape.bias_jumps.total_rad_s;
             let sigma = libm::sqrtf(2.0 * self.noise.rate_density / RUN_S);
             gyroscope.bias_sigma.apply(|each| *each = libm::hypotf(*each, sigma));
         }

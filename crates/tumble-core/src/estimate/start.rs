@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::model::Nominal;
 use crate::calibration::Triad;
+use crate::motion::means::{mean_force, mean_rate};
 use crate::motion::path::whole_turns;
-use crate::motion::segmenter::{mean_force, mean_rate};
 use crate::tape::{Exclusion, Kind, Segment, Tape};
 
 /// The longest usable stills' means by face, and what follows.

@@ -126,7 +126,7 @@ fn every_error_code_is_the_leds_and_every_reason_has_a_remedy() {
     }
     let faces: Vec<Option<Face>> = reasons().iter().map(Reason::face_to_redo).collect();
     let (x, y, z) = (Some(Face::PlusX), Some(Face::PlusY), Some(Face::PlusZ));
-    assert_eq!(faces, [x, x, z, y, z, None, None, y, z, None, None, None, None, None, None]);
+    assert_eq!(faces, [x, x, z, y, z, None, None, y, z, None, None, None, None, None, None, None]);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::tape::{Kind, Tape};
 
 /// A box that turns on a table keeps the same axis up within this, rad: twice a 3° table, 1° of wobble, and what a
 /// gyroscope 5 % out of true (sheet: 3 % scale, 2 % cross-axis) adds over half a turn, 5 % of 180° = 9°.
-const ON_TABLE: f32 = 16.0 * DEGREE_RAD;
+pub(super) const ON_TABLE: f32 = 16.0 * DEGREE_RAD;
 /// A whole turn within this, rad: 3 % of scale (sheet) is 10.8°, and a hand stops to ±2°, three sigma 6°.
 pub const WHOLE_TURN: f32 = 17.0 * DEGREE_RAD;
 /// A turn by less, rad, is no step of a whole one: the box was nudged, or settled, and may have left the fence. Both ends

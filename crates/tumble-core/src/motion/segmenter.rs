@@ -7,10 +7,12 @@ use heapless::Vec;
 use nalgebra::Vector3;
 
 use super::block::{Accumulator, Block, Completed};
-use super::path::trace;
+use super::means::{mean_force, mean_rate};
+use super::path::{ON_TABLE, trace};
 use super::standstill::{Standstill, strike_turns};
 use super::stillness::{Excess, Stillness};
 use super::{MotionEvent, RevolutionCheck};
+use crate::DEGREE_RAD;
 use crate::face::Face;
 use crate::sample::Sample;
 use crate::tape::{Exclusion, Full, Kind, Segment, Tape};
@@ -21,6 +23,9 @@ const CONFIRM_BLOCKS: u32 = 3;
 const REST_RECORD_S: f32 = 0.45;
 /// A block that is quiet but for its mean rate proves earlier "rests" to have been steady turns after this many.
 const DISPROOF_BLOCKS: u32 = 6;
+
+/// A gyroscope feels less between two faces, rad/s: ten times the 0.1 °/s a g of a sibling's sheet, either way.
+const MOST_FELT: f32 = 2.0 * DEGREE_RAD;
 
 /// What one sample tells.
 pub type Events = Vec<MotionEvent, 6>;
@@ -122,7 +127,8 @@ impl Segmenter {
             self.block_start_us = sample.t_us;
         }
         tape.grain.see(sample);
-        let less_jump = Sample { angular_rate_rad_s: sample.angular_rate_rad_s - tape.bias_jump_rad_s, ..*sample };
+        let less_jump =
+            Sample { angular_rate_rad_s: sample.angular_rate_rad_s - tape.bias_jumps.total_rad_s, ..*sample };
         let completed = self.accumulator.push(&less_jump, clipped);
         if let Some(gap_s) = completed.gap_s {
             self.gap(sample, gap_s, tape, &mut events);
@@ -160,13 +166,10 @@ impl Segmenter {
         let Some(block) = &completed.block else { return Ok(()) };
         let excess = self.stillness.judge(block, matches!(self.state, State::Still { .. }));
         let rest = self.stillness.resting_rate();
-        if let Some(jump) = self.standstill.step(block, self.block_start_us, &excess, rest) {
-            // What follows is put on the tape less the jump, and is held against the rests before as ever.
-            tape.bias_jump_rad_s += jump;
-            self.jumped = true;
-            self.stillness.interrupt();
+        match self.standstill.step(block, self.block_start_us, &excess, rest) {
+            Some(by) => self.rests_otherwise(&by, block, tape),
+            None => self.disprove(block, &excess, tape),
         }
-        self.disprove(block, &excess, tape);
         let result = match self.state {
             State::Moving { .. } => self.while_moving(block, &excess, tape, events),
             State::Still { .. } => self.while_still(block, &excess, tape, events),
@@ -364,38 +367,33 @@ impl Segmenter {
         self.state = State::Moving { quiet: 0, candidate_first: end, candidate_us: sample.t_us };
     }
 
+    /// It rests with another rate than the rest before. On the same face the bias has jumped: what follows is put on the tape less the jump, and is
+    /// held against the rests before as ever. On another one it may be what the sensor feels of force, which the estimator tells.
+    fn rests_otherwise<const R: usize, const S: usize>(
+        &mut self,
+        by: &Vector3<f32>,
+        block: &Block,
+        tape: &mut Tape<R, S>,
+    ) {
+        self.disproof = 0;
+        let felt = by.norm() < MOST_FELT && self.last_up.is_none_or(|up| up.angle(&block.mean_force) > ON_TABLE);
+        if !felt {
+            tape.bias_jumps.take(by);
+            self.jumped = true;
+            self.stillness.interrupt();
+        } else if let Some(rest) = self.stillness.resting_rate() {
+            self.stillness.set_resting_rate(rest + by);
+        }
+    }
+
     /// Where a later rest is quiet but for its mean rate, and lies nearer to zero, the earlier ones may have been steady turns.
     fn disprove<const R: usize, const S: usize>(&mut self, block: &Block, excess: &Excess, tape: &mut Tape<R, S>) {
         let contradicts = excess.variance.max(excess.wander) <= 1.0 && excess.offset > 1.0;
         let nearer = self.stillness.resting_rate().is_some_and(|rest| block.mean_rate.norm() < rest.norm());
-        self.disproof = if contradicts && nearer && !self.jumped { self.disproof + 1 } else { 0 };
+        self.disproof = if contradicts && nearer { self.disproof + 1 } else { 0 };
         if self.disproof == DISPROOF_BLOCKS && strike_turns(tape, &block.mean_rate) {
             self.disproof = 0;
             self.stillness.set_resting_rate(block.mean_rate);
         }
     }
-}
-
-fn mean_over<const R: usize, const S: usize>(
-    tape: &Tape<R, S>,
-    first: usize,
-    end: usize,
-    value: fn(&super::record::Record) -> Vector3<f32>,
-) -> Vector3<f32> {
-    let (mut sum, mut time) = (Vector3::zeros(), 0.0f32);
-    for record in (first..end).filter_map(|index| tape.record(index)) {
-        sum += value(&record);
-        time += record.dt_s;
-    }
-    if time > 0.0 { sum / time } else { sum }
-}
-
-/// Mean specific force over records, m/s².
-pub fn mean_force<const R: usize, const S: usize>(tape: &Tape<R, S>, first: usize, end: usize) -> Vector3<f32> {
-    mean_over(tape, first, end, |record| record.specific_force_mps2 * record.dt_s)
-}
-
-/// Mean angular rate over records, rad/s.
-pub fn mean_rate<const R: usize, const S: usize>(tape: &Tape<R, S>, first: usize, end: usize) -> Vector3<f32> {
-    mean_over(tape, first, end, |record| record.rotation_rad)
 }

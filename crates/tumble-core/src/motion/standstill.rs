@@ -5,11 +5,14 @@
 //! would turn with the part of d across it, over a chord of `2 sin(|d| T/2) |d⊥|/|d|`. Where gravity stayed within half of that,
 //! and half of it lies beyond noise at a rate of 1e-6, the box rests and d is the gyroscope's. Crooked axes (3 %, 3° askew: 8 %) lend a steady turn
 //! about gravity a d⊥ as well, so d⊥ must be a third of d. A jump along gravity is told on the next face.
+//!
+//! On the face of the last rest that is a bias that jumped. On another face it may be what the gyroscope feels of force, 0.5 °/s between opposite
+//! faces at 0.25 °/s a g: it is rest, and the estimator tells what of.
 
 use nalgebra::Vector3;
 
 use super::block::Block;
-use super::segmenter::{mean_force, mean_rate};
+use super::means::{mean_force, mean_rate};
 use super::stillness::{Excess, INDEPENDENT, UNKNOWN_OFFSET, Z};
 use crate::tape::{Exclusion, Kind, Segment, Tape};
 

@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector, Vector2, Vector3};
 
 use super::gravity::TILT_SIGMA;
 use super::{AccelMatrix, Instant, Real, RestRates, Setting, Tilt, Visit, real, vector};
-use crate::motion::segmenter::mean_force;
+use crate::motion::means::mean_force;
 use crate::tape::{Segment, Tape};
 
 /// Prior of the sensor's distance from the axis, m.

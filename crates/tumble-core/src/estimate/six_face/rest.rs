@@ -4,7 +4,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 
 use super::{EARTH_SIGMA, Real, Setting, real, vector};
 use crate::estimate::noise;
-use crate::motion::segmenter::{mean_force, mean_rate};
+use crate::motion::means::{mean_force, mean_rate};
 use crate::tape::{Segment, Tape};
 
 /// Three biases, three drifts, one Earth.

@@ -8,7 +8,7 @@ use crate::calibration::{Calibration, Fit, Frame, TriadEstimate};
 use crate::estimate::device::Breakdown;
 use crate::estimate::prior::CORRECTION_SIGMA;
 use crate::estimate::six_face::{Real, Setting, SixFace, single, turns, vector};
-use crate::motion::segmenter::mean_force;
+use crate::motion::means::mean_force;
 use crate::tape::Tape;
 
 /// The two-step method's result.

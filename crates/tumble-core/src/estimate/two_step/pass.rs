@@ -7,7 +7,7 @@ use super::leak::Source;
 use super::nominal::Nominal;
 use super::{Leak, Response, Step, Strapdown, Variant};
 use crate::estimate::six_face::{EARTH_SIGMA, Instant, Real, Setting, SixFace, Visit, VisitFit, real, vector};
-use crate::motion::segmenter::mean_force;
+use crate::motion::means::mean_force;
 use crate::tape::{Kind, Segment, Tape};
 
 /// Position noise of one record, m, beside the lever arm's.

@@ -29,7 +29,7 @@ const LEVEL_WIDTH: f32 = 30.0;
 impl<const S: usize> Walk<S> {
     pub(super) fn enter_still<const R: usize>(&mut self, tape: &Tape<R, S>, segment: &Segment, noise: &Noise) {
         let (first, end) = (usize::from(segment.first), usize::from(segment.end));
-        let force = crate::motion::segmenter::mean_force(tape, first, end);
+        let force = crate::motion::means::mean_force(tape, first, end);
         let solid = noise::is_solid(segment, noise.quiet_variance);
         if !solid {
             let own = scatter(tape, segment).force / noise.force_density;
@@ -58,7 +58,7 @@ impl<const S: usize> Walk<S> {
         let records = || (first..end).filter_map(|index| tape.record(index));
         let noisiest = records().map(|record| rate_variance(&record, noise)).fold(0.0, f32::max);
         let limit = UNSTEADY_SIGMAS * libm::sqrtf(noisiest);
-        self.pass.steady = (crate::motion::segmenter::mean_rate(tape, first, end), limit);
+        self.pass.steady = (crate::motion::means::mean_rate(tape, first, end), limit);
         let (sum, time_s) = records()
             .filter(|record| self.is_steady(record))
             .fold((Vector3::zeros(), 0.0), |(sum, time_s), record| (sum + record.rotation_rad, time_s + record.dt_s));
