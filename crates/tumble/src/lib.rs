@@ -20,3 +20,4 @@ pub mod serial;
 pub mod settle;
 pub mod simulate;
 pub mod study;
+pub mod widen;

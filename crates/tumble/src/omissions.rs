@@ -18,14 +18,23 @@ use crate::recording::Recording;
 /// Effects that the estimator has states or noise for: its numbers and their sigmas allow for them.
 const HELD: [&str; 3] = ["accel_lever_arm", "earth_rotation", "incomplete_turn"];
 
-/// Diagnoses the recording and adds to the outcome's warnings what its numbers do not allow for.
-pub fn look(recording: &Recording, conditions: Conditions, outcome: &mut Outcome, mut progress: impl FnMut(&str, f32)) {
+/// Diagnoses the recording and adds to the outcome's warnings what its numbers do not allow for; `carried` was taken out before.
+pub fn look(
+    recording: &Recording,
+    conditions: Conditions,
+    carried: &[String],
+    outcome: &mut Outcome,
+    mut progress: impl FnMut(&str, f32),
+) {
     let options = Options { without: Vec::new(), seed: 1, conditions: Some(conditions) };
     let diagnosis = diagnose(recording, &options, &mut progress).diagnosis;
     let carries_g = outcome.calibration.as_ref().is_some_and(|calibration| calibration.g_sensitivity.is_some());
     let jumped = outcome.segments.iter().any(|segment| segment.why == why(Exclusion::BiasJump));
     let held = |id: &str| {
-        HELD.contains(&id) || (id == "gyro_g_sensitivity" && carries_g) || (id == "gyro_bias_step" && jumped)
+        HELD.contains(&id)
+            || carried.iter().any(|carried| carried == id)
+            || (id == "gyro_g_sensitivity" && carries_g)
+            || (id == "gyro_bias_step" && jumped)
     };
     let structural = |id: &str| STRUCTURAL.iter().any(|effect| effect.card.id == id);
     for found in diagnosis.effects.iter().filter(|found| structural(&found.id) && !held(&found.id)) {

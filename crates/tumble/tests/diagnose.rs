@@ -4,7 +4,7 @@ use tumble::diagnose::carry::carry;
 use tumble::diagnose::diagnosis::{Limit, Verdict};
 use tumble::diagnose::transfer::try_on;
 use tumble::diagnose::{Options, Outcome, diagnose};
-use tumble::recording::{BoxFaces, Metadata, Recording, Row, TurnStops};
+use tumble::recording::{BoxFaces, Inference, Metadata, Recording, Row, TurnStops};
 use tumble_sim::effect::Effect;
 use tumble_sim::motion::Hands;
 use tumble_sim::{Scheme, SchemeConfig};
@@ -113,9 +113,16 @@ fn g_sensitivity_is_named_with_its_numbers_and_can_be_carried() {
     assert!(held_out.after < held_out.before && held_out.constancy_p > 1e-4, "{held_out:?}");
 
     let conditions = tumble::calibrate::conditions(&recording.metadata);
-    let (readings, carried) = carry(&recording, conditions, &["gyro_g_sensitivity".into()]).expect("it can be carried");
-    assert_eq!((readings.len(), carried.len(), carried[0].parameters.len()), (recording.rows.len(), 1, 9));
-    assert!(carry(&recording, conditions, &["shock".into()]).is_err());
+    let mut readings = recording.samples(&Inference::of(&recording));
+    let before = readings.clone();
+    let carried =
+        carry(&recording, conditions, &["gyro_g_sensitivity".into()], &mut readings).expect("it can be carried");
+    assert_eq!((carried.effects.len(), carried.effects[0].parameters.len()), (1, 9));
+    let felt = |k: usize| before[k].sample.angular_rate_rad_s - readings[k].sample.angular_rate_rad_s;
+    let largest = (0..readings.len()).map(|k| felt(k).norm().to_degrees()).fold(0.0, f32::max);
+    // Its largest element is 0.08 °/s a g.
+    assert!((0.04..0.4).contains(&largest), "{largest}");
+    assert!(carry(&recording, conditions, &["shock".into()], &mut readings).is_err());
 }
 
 #[test]

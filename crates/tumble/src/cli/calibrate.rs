@@ -11,11 +11,12 @@ use tumble_core::sample::Ranges;
 use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
 use crate::calibrate::{self, Method, Session};
-use crate::diagnose::carry;
+use crate::diagnose::carry::carry;
 use crate::faults::{self, Mended};
 use crate::omissions;
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
+use crate::widen::widen;
 
 /// Where the axes of compensated data come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -99,17 +100,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), Refusal> {
 
 fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal> {
     let inference = Inference::of(recording);
-    let mut readings = readings(arguments, recording, &inference);
-    let mut carried = Vec::new();
-    if !arguments.with.is_empty() {
-        let conditions = conditions(arguments, recording);
-        (readings, carried) = carry::carry(recording, conditions, &arguments.with).map_err(Refusal::one)?;
-    }
-    // What an emulated board is given is not mended, nor what an effect was taken out of.
-    let replayed = arguments.board_counts || !arguments.with.is_empty();
-    let Mended { readings, lost, remarks } = match replayed {
+    let readings = readings(arguments, recording, &inference);
+    // What an emulated board is given is not mended.
+    let Mended { mut readings, lost, remarks } = match arguments.board_counts {
         true => Mended { readings, lost: inference.missing(), remarks: Vec::new() },
         false => faults::mend(recording, &inference, readings),
+    };
+    let carry = match arguments.with.as_slice() {
+        [] => None,
+        ids => Some(carry(recording, conditions(arguments, recording), ids, &mut readings).map_err(Refusal::one)?),
     };
     let session = Session {
         readings: &readings,
@@ -119,14 +118,18 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
     };
     let mut progress = Progress::new();
     let mut outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
+    if let Some(carry) = &carry {
+        let method = arguments.estimator.into();
+        widen(carry, &session, method, &mut outcome, |share| progress.share("how sure of it", share));
+    }
     remarks.into_iter().for_each(|remark| outcome.warn(remark));
     let own_model = matches!(arguments.estimator, EstimatorWord::Device | EstimatorWord::Batch);
-    if own_model && !replayed && !arguments.quick && outcome.verdict != Verdict::Rejected {
+    if own_model && !arguments.board_counts && !arguments.quick && outcome.verdict != Verdict::Rejected {
         let what = |what: &str, share: f32| progress.share(what, share);
-        omissions::look(recording, session.conditions, &mut outcome, what);
+        omissions::look(recording, session.conditions, &arguments.with, &mut outcome, what);
     }
     drop(progress);
-    let report = Report::of(&outcome).carrying(carried);
+    let report = Report::of(&outcome).carrying(carry.map_or_else(Vec::new, |carry| carry.effects));
     if arguments.json {
         print_json(&report)?;
     } else {

@@ -3,16 +3,21 @@
 //!
 //! `ideal = correction · (raw − bias − effect)`: the effect's numbers stand beside the calibration's, in raw units.
 
+use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use tumble_core::estimate::Conditions;
 
+use super::catalogue::Parameter;
 use super::diagnosis::Value;
+use super::intake::intake;
 use super::numbers;
+use super::options::Options;
 use super::posterior;
-use super::prepare::prepare;
 use super::search::bench::{Accepted, Bench};
 use super::search::ledger::Ledger;
-use crate::recording::{Inference, Reading, Recording};
+use super::twin::influence::Push;
+use super::twin::trajectory::mean_temperature;
+use crate::recording::{Reading, Recording};
 
 /// Effects that depend on nothing but what a reading comes with: force, temperature, rate.
 pub const CARRIED: [&str; 7] = [
@@ -38,7 +43,30 @@ pub struct Carried {
     pub about_degc: Option<f64>,
 }
 
-/// Fits the effects and takes them out of the readings.
+/// What is taken out of a recording's readings.
+pub struct Carry {
+    /// The effects with their numbers.
+    pub effects: Vec<Carried>,
+    /// What may be wrong with it, one sigma each, independent of each other: the sizes' covariance by its principal axes, and what each is
+    /// of every reading.
+    doubts: Vec<Vec<Push>>,
+}
+
+impl Carry {
+    /// The same readings, had the effects been larger by one sigma along each of the principal axes.
+    pub fn doubtful<'a>(&'a self, readings: &'a [Reading]) -> impl ExactSizeIterator<Item = Vec<Reading>> + 'a {
+        self.doubts.iter().map(|pushes| {
+            let mut readings = readings.to_vec();
+            take_off(&mut readings, pushes.iter().copied());
+            readings
+        })
+    }
+}
+
+/// Fits the effects to the recording, what ails its samples put right or masked, and takes them out of `readings`, which are the
+/// recording's, mended or rounded.
+///
+/// Sizes are those of the posterior: where a recording hardly tells them, the prior (what is typical) keeps them near nothing.
 ///
 /// # Errors
 /// An effect that cannot be carried, or cannot show in this recording: in words.
@@ -46,11 +74,17 @@ pub fn carry(
     recording: &Recording,
     conditions: Conditions,
     ids: &[String],
-) -> Result<(Vec<Reading>, Vec<Carried>), String> {
+    readings: &mut [Reading],
+) -> Result<Carry, String> {
     if let Some(id) = ids.iter().find(|id| !CARRIED.contains(&id.as_str())) {
         return Err(format!("--with {id}: a calibration can carry {}", CARRIED.join(", ")));
     }
-    let prepared = prepare(recording, conditions).map_err(|why| format!("--with: {}", why.0))?;
+    let taken = intake(recording, &Options { without: Vec::new(), seed: 1, conditions: Some(conditions) });
+    if taken.gated.remap.is_some() {
+        let why = "axes or ranges of the two triads do not belong together; put them right in the recording first";
+        return Err(format!("--with: {why} (`tumble diagnose` says which)"));
+    }
+    let prepared = taken.prepared.map_err(|why| format!("--with: {why}"))?;
     let mut bench = Bench::new(prepared.twin, &[]);
     let noise = bench.twin.noise;
     let rows = bench.rows(noise);
@@ -60,26 +94,48 @@ pub fn carry(
         bench.accepted.push(accepted);
     }
     bench.refit();
-    let rows = bench.rows(noise);
-    let ledger = Ledger::new(&rows, |_| true);
-    let temperature = super::twin::trajectory::mean_temperature(&bench.original);
     let settled = posterior::noise(&mut bench);
-    let mut carried = Vec::new();
-    for (k, id) in ids.iter().enumerate() {
-        let (values, _) = numbers::shift_values(&mut bench, &rows, &ledger, settled, k);
-        carried.push(Carried {
+    let (sizes, covariance) = numbers::joint(&mut bench, settled);
+    take_off(readings, bench.pushes(sizes.as_slice()));
+    Ok(Carry { effects: effects(&bench, ids, &sizes, &covariance), doubts: doubts(&bench, covariance) })
+}
+
+fn effects(bench: &Bench, ids: &[String], sizes: &DVector<f64>, covariance: &DMatrix<f64>) -> Vec<Carried> {
+    let temperature = mean_temperature(&bench.original);
+    let mut next = 0;
+    let carried = ids.iter().zip(&bench.accepted).map(|(id, accepted)| {
+        let parameters = bench.placed(accepted).map_or(&[][..], |placed| &placed.parameters);
+        let first = next;
+        next += parameters.len();
+        let value = |(parameter, k): (&Parameter, usize)| Value {
+            name: parameter.name.clone(),
+            value: sizes[k],
+            sigma: covariance[(k, k)].sqrt(),
+            unit: parameter.unit.into(),
+        };
+        Carried {
             id: id.clone(),
-            equation: bench.candidate(&bench.accepted[k]).effect.card.equation.into(),
-            parameters: values,
+            equation: bench.candidate(accepted).effect.card.equation.into(),
+            parameters: parameters.iter().zip(first..).map(value).collect(),
             about_degc: temperature.is_finite().then_some(temperature),
-        });
+        }
+    });
+    carried.collect()
+}
+
+/// By principal axes.
+fn doubts(bench: &Bench, covariance: DMatrix<f64>) -> Vec<Vec<Push>> {
+    let principal = covariance.symmetric_eigen();
+    let axes = principal.eigenvectors.column_iter().zip(principal.eigenvalues.iter());
+    let sigmas = axes.map(|(axis, variance)| axis * variance.max(0.0).sqrt());
+    sigmas.map(|sigma| bench.pushes(sigma.as_slice()).collect()).collect()
+}
+
+fn take_off(readings: &mut [Reading], pushes: impl Iterator<Item = Push>) {
+    for (reading, push) in readings.iter_mut().zip(pushes) {
+        reading.sample.angular_rate_rad_s -= push.rate.cast::<f32>();
+        reading.sample.specific_force_mps2 -= push.force.cast::<f32>();
     }
-    let mut readings = recording.samples(&Inference::of(recording));
-    for (reading, raw) in readings.iter_mut().zip(&bench.twin.samples) {
-        reading.sample.angular_rate_rad_s = raw.rate.cast();
-        reading.sample.specific_force_mps2 = raw.force.cast();
-    }
-    Ok((readings, carried))
 }
 
 fn accept(bench: &Bench, ledger: &Ledger, id: &str) -> Result<Accepted, String> {
@@ -96,11 +152,13 @@ fn accept(bench: &Bench, ledger: &Ledger, id: &str) -> Result<Accepted, String> 
     Ok(Accepted { candidate, variant, widening, taken: vec![0.0; parameters] })
 }
 
-/// g-sensitivity as the calibration's own field has it: rad/s per m/s², row the gyroscope's axis.
-pub fn g_sensitivity(carried: &[Carried]) -> Option<[[f32; 3]; 3]> {
+/// g-sensitivity as the calibration's own fields have it, with its sigma: rad/s per m/s², row the gyroscope's axis.
+pub fn g_sensitivity(carried: &[Carried]) -> Option<[[[f32; 3]; 3]; 2]> {
     let effect = carried.iter().find(|carried| carried.id == "gyro_g_sensitivity")?;
     let unit = super::catalogue::DPS / super::catalogue::G;
-    let element =
-        |i: usize, j: usize| effect.parameters.get(3 * i + j).map_or(0.0, |value| (value.value * unit) as f32);
-    Some(std::array::from_fn(|i| std::array::from_fn(|j| element(i, j))))
+    let of = |what: fn(&Value) -> f64| {
+        let element = |k: usize| effect.parameters.get(k).map_or(0.0, |value| (what(value) * unit) as f32);
+        std::array::from_fn(|i| std::array::from_fn(|j| element(3 * i + j)))
+    };
+    Some([of(|value| value.value), of(|value| value.sigma)])
 }

@@ -6,7 +6,7 @@ use tumble_core::tape::Kind;
 
 use super::gates::{self, Gated, Leap, Scene};
 use super::options::Options;
-use super::prepare::{Prepared, prepare_settled};
+use super::prepare::{Prepared, prepare};
 use super::search::bench::Bench;
 use super::twin::data::Raw;
 use crate::recording::{Inference, Reading, Recording};
@@ -75,7 +75,7 @@ fn take(recording: &Recording, options: &Options, without_moves: bool) -> Intake
         masked.extend(leapt(&samples, &settled, &gated));
     }
     let remarks = remarks(&settled, lost);
-    let prepared = prepare_settled(samples, &settled, conditions, &masked).map_err(|why| why.0);
+    let prepared = prepare(samples, &settled, conditions, &masked).map_err(|why| why.0);
     Intake { gated, conditions, prepared, remarks }
 }
 

@@ -1,6 +1,6 @@
 //! An accepted effect's numbers with their sigmas.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::catalogue::Parameter;
 use super::diagnosis::Value;
@@ -16,6 +16,20 @@ pub fn total(bench: &Bench, fit: &Fit, k: usize) -> DVector<f64> {
     let before: usize = (0..k).map(|j| parameters(bench, j)).sum();
     let taken = &bench.accepted[k].taken;
     DVector::from_fn(parameters(bench, k), |i, _| fit.theta[before + i] + taken[i])
+}
+
+/// θ of all accepted effects together and its covariance, under `noise` and the prior.
+pub fn joint(bench: &mut Bench, noise: Noise) -> (DVector<f64>, DMatrix<f64>) {
+    let ids: Vec<&str> = bench.accepted.iter().map(|accepted| bench.candidate(accepted).effect.card.id).collect();
+    let terms = bench.accepted_terms(&[]);
+    let in_force = std::mem::replace(&mut bench.twin.noise, noise);
+    ids.iter().for_each(|id| bench.twin.leave_to_effect(id, true));
+    let (ledger, terms) = bench.ledger_of(&terms);
+    ids.iter().for_each(|id| bench.twin.leave_to_effect(id, false));
+    bench.twin.noise = in_force;
+    let fit = ledger.believing(Class::Closure).fit(&terms);
+    let theta = (0..ids.len()).flat_map(|k| total(bench, &fit, k).iter().copied().collect::<Vec<f64>>());
+    (DVector::from_iterator(fit.theta.len(), theta), fit.covariance)
 }
 
 /// An accepted effect's numbers, freed of the prior, under `noise` (see [`posterior::noise`](super::posterior::noise)), and its

@@ -8,8 +8,8 @@ use super::twin::data::{Raw, stretches};
 use super::twin::edges;
 use super::twin::noise::Noise;
 use super::twin::trajectory::Nominal;
-use crate::recording::{Inference, Recording};
-use crate::settle::{Session, Settled};
+
+use crate::settle::Settled;
 
 /// Why there is no twin.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,25 +21,12 @@ pub struct Prepared {
     pub twin: Twin,
 }
 
-/// Runs segmenter, estimator and the twin's own fit.
-///
-/// # Errors
-/// If there is nothing to estimate from, or the arithmetic breaks down: in words.
-pub fn prepare(recording: &Recording, conditions: Conditions) -> Result<Prepared, NoTwin> {
-    let inference = Inference::of(recording);
-    let readings = recording.samples(&inference);
-    let origin_s = recording.origin_s();
-    let samples = recording.rows.iter().map(|row| Raw::of(row, origin_s)).collect();
-    let session = Session { readings: &readings, origin_s, lost: inference.missing(), conditions };
-    prepare_settled(samples, &session.settle(&mut |_| {}), conditions, &[])
-}
-
-/// The same from samples, and from what the same samples settled into as the estimator takes them; segments in `masked` are
+/// From samples, and from what the same samples settled into as the estimator takes them; segments in `masked` are
 /// left out and lose attitude.
 ///
 /// # Errors
-/// As [`prepare`].
-pub fn prepare_settled(
+/// If there is nothing to estimate from, or the arithmetic breaks down: in words.
+pub fn prepare(
     samples: Vec<Raw>,
     settled: &Settled,
     conditions: Conditions,

@@ -49,8 +49,9 @@ impl Report {
     #[must_use]
     pub fn carrying(mut self, carried: Vec<Carried>) -> Self {
         if let Some(gyroscope) = &mut self.gyroscope {
-            if let Some(felt) = g_sensitivity(&carried) {
+            if let Some([felt, sigma]) = g_sensitivity(&carried) {
                 gyroscope.g_sensitivity_rad_s_per_mps2 = Some(felt);
+                gyroscope.g_sensitivity_sigma_rad_s_per_mps2 = Some(sigma);
             }
             self.with = carried;
         }

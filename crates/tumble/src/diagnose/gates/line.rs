@@ -7,7 +7,9 @@
 //! at e⁻¹¹·⁵. Within a piece (10 s at most) phase counts, between pieces it does not: what hums drifts.
 //!
 //! p is the geometric mean of the medians of the bins 3 to 12 resolutions off to either side: exact on any flank that falls
-//! exponentially, too large on power laws; the knee of a low-pass bends it by a few per cent: taken times 1.05. Its own scatter, δ² =
+//! exponentially, too large on power laws; a soft knee bends it by a few per cent: taken times 1.05. Where a decimation's steep low-pass ends
+//! below half the rate it is half of the noise at the knee (two of eight clean recordings at 100 Hz had a line there): never less than
+//! the parabola through the logarithms of the near and the far half. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
 //! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary
 //! noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates' scatter from 4 to 15 Hz, over 0.3 °/s, or by
@@ -16,6 +18,8 @@
 //!
 //! Limit: the excess over the threshold that a line of the box has in 95 of 100 recordings: λ with λ − 1.645·√(2·(2R + 2λ))
 //! = threshold − 2R (non-central χ²), and A² = 2·p·λ/Σ(Σw)²/Σw², at the noise p of the loudest twentieth of the band.
+
+use std::ops::Range;
 
 use nalgebra::Vector3;
 
@@ -27,16 +31,19 @@ use crate::diagnose::catalogue::Card;
 
 const LEAST_HZ: f64 = 2.0;
 /// A hand sways up to 6 Hz (a table rocks below 4, and is no hand) and trembles above.
-const SWAY_HZ: std::ops::Range<f64> = 4.0..6.0;
+const SWAY_HZ: Range<f64> = 4.0..6.0;
 const TREMOR_HZ: f64 = 15.0;
 const TREMBLING_DPS: f64 = 0.3;
 /// Where there is none of it, for comparison.
-const CALM_HZ: std::ops::Range<f64> = 16.0..30.0;
+const CALM_HZ: Range<f64> = 16.0..30.0;
 const TREMBLING: f64 = 1.5;
 /// Resolutions to either side that a rocking table's power reaches: it is a thousand times the noise and more.
 const SKIRTS: f64 = 5.0;
 /// Bend of a smooth spectrum over the bins that the floor is taken from.
 const BEND: f64 = 1.05;
+/// Resolutions where the bins of the floor are halved, and the middles' squares: the far one is off by 9.75, the near one by 5.25.
+const HALF_WAY: f64 = 7.5;
+const KNEE: f64 = 5.25 * 5.25 / (9.75 * 9.75 - 5.25 * 5.25);
 /// ln of how many directions stand for all, and cos² of how far any is from the next.
 const LN_DIRECTIONS: f64 = 4.8;
 const NEAR: f64 = 0.97;
@@ -182,17 +189,20 @@ impl Hand {
 
 /// Noise of each axis about a bin.
 fn floor(spectra: &Spectra, triad: usize, bin: usize) -> Vector3<f64> {
-    let off = |resolutions: f64| (resolutions * spectra.resolution_hz / spectra.bin_hz).round() as usize;
     let count = spectra.cross.len();
-    let low = bin.saturating_sub(off(12.0)).max(off(2.0))..bin.saturating_sub(off(3.0)).max(off(2.0));
-    let high = (bin + off(3.0)).min(count)..(bin + off(12.0)).min(count);
+    let off = |resolutions: f64| (resolutions * spectra.resolution_hz / spectra.bin_hz).round() as usize;
+    let below = |resolutions: f64| bin.saturating_sub(off(resolutions)).max(off(2.0));
+    let above = |resolutions: f64| (bin + off(resolutions)).min(count);
     // The median of a mean of R exponentials is (1 − 1/9R)³ of their mean (Wilson and Hilferty).
     let share = (1.0 - 1.0 / (9.0 * spectra.pieces)).powi(3) / BEND;
     Vector3::from_fn(|axis, _| {
-        let side = |bins: std::ops::Range<usize>| median(bins.map(|k| spectra.cross[k][triad][(axis, axis)]).collect());
-        let (low, high) = (side(low.clone()), side(high.clone()));
-        let both = if low.is_nan() || high.is_nan() { low.max(high) } else { (low * high).sqrt() };
-        (both / share).max(1e-30)
+        let side = |bins: Range<usize>| median(bins.map(|k| spectra.cross[k][triad][(axis, axis)]).collect());
+        let sides = |from: f64, to: f64| [side(below(to)..below(from)), side(above(from)..above(to))];
+        let both = |[low, high]: [f64; 2]| if (low * high).is_nan() { low.max(high) } else { (low * high).sqrt() };
+        let (all, near, far) = (both(sides(3.0, 12.0)), both(sides(3.0, HALF_WAY)), both(sides(HALF_WAY, 12.0)));
+        // The parabola through the logarithms at the halves' middles; a NaN leaves `all`.
+        let bent = near * (near / far).powf(KNEE);
+        (all.max(bent) / share).max(1e-30)
     })
 }
 

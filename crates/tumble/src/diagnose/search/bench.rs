@@ -11,7 +11,7 @@ use crate::diagnose::catalogue::{AtSize, Effect, Model, Parameter, STRUCTURAL};
 use crate::diagnose::twin::Twin;
 use crate::diagnose::twin::column::Column;
 use crate::diagnose::twin::data::Raw;
-use crate::diagnose::twin::influence::Influence;
+use crate::diagnose::twin::influence::{Influence, Push};
 use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
 use crate::diagnose::twin::rows::Rows;
 
@@ -311,6 +311,21 @@ impl Bench {
                 }
             }
         }
+    }
+
+    /// What the accepted effects' columns at these sizes are of every reading.
+    pub fn pushes<'a>(&'a self, sizes: &'a [f64]) -> impl Iterator<Item = Push> + 'a {
+        let columns =
+            self.accepted.iter().filter_map(|accepted| self.placed(accepted)).flat_map(|placed| placed.columns.clone());
+        let sized: Vec<(usize, f64)> = columns.zip(sizes.iter().copied()).collect();
+        self.twin.trajectory.moments.iter().map(move |moment| {
+            let readings =
+                sized.iter().filter_map(|(column, size)| Some((self.columns[*column].influence.reading()?, size)));
+            readings.fold(Push::default(), |sum, (reading, size)| {
+                let push = reading(moment);
+                Push { rate: sum.rate + push.rate * *size, force: sum.force + push.force * *size }
+            })
+        })
     }
 
     /// The model of some terms under a noise. Only their columns are carried: a hundred times faster than all.

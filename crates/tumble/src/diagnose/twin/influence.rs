@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::trajectory::Moment;
 
 /// What is added to a raw reading at a moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Push {
     /// rad/s, sensor axes.
     pub rate: Vector3<f64>,
