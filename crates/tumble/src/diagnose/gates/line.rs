@@ -9,7 +9,8 @@
 //! p is the geometric mean of the medians of the bins 3 to 12 resolutions off to either side: exact on any flank that falls
 //! exponentially, too large on power laws; a soft knee bends it by a few per cent: taken times 1.05. Where a decimation's steep low-pass ends
 //! below half the rate it is half of the noise at the knee (two of eight clean recordings at 100 Hz had a line there): never less than
-//! the parabola through the logarithms of the near and the far half. Its own scatter, δ² =
+//! the parabola through the logarithms of the near and the far half. In a stop band p is at least a hundredth of the noise in the pass band, for
+//! ripples are lines too. Its own scatter, δ² =
 //! 1.57/(18·R) an axis, widens the excess by √(1 + freedom·δ²/2). A line is narrow: three resolutions off it has fallen to
 //! a third, give or take three sigmas of noise. A hand's tremor (8 to 12 Hz, 1 to 2 Hz wide) has not where pieces are long, but it is no stationary
 //! noise either: where hands hold the box, nothing is told below 15 Hz. That they do shows by the rates' scatter from 4 to 15 Hz, over 0.3 °/s, or by
@@ -41,6 +42,8 @@ const TREMBLING: f64 = 1.5;
 const SKIRTS: f64 = 5.0;
 /// Bend of a smooth spectrum over the bins that the floor is taken from.
 const BEND: f64 = 1.05;
+/// Share of the noise that what a filter keeps back is taken for at least: its stop band has ripples of its own, from 40 dB down.
+const STOPPED: f64 = 0.01;
 /// Resolutions where the bins of the floor are halved, and the middles' squares: the far one is off by 9.75, the near one by 5.25.
 const HALF_WAY: f64 = 7.5;
 const KNEE: f64 = 5.25 * 5.25 / (9.75 * 9.75 - 5.25 * 5.25);
@@ -202,7 +205,7 @@ fn floor(spectra: &Spectra, triad: usize, bin: usize) -> Vector3<f64> {
         let (all, near, far) = (both(sides(3.0, 12.0)), both(sides(3.0, HALF_WAY)), both(sides(HALF_WAY, 12.0)));
         // The parabola through the logarithms at the halves' middles; a NaN leaves `all`.
         let bent = near * (near / far).powf(KNEE);
-        (all.max(bent) / share).max(1e-30)
+        (all.max(bent) / share).max(STOPPED * spectra.level[triad][axis]).max(1e-30)
     })
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Matrix3;
 use realfft::num_complex::Complex;
 use realfft::{RealFftPlanner, RealToComplex};
 
-use super::chance::median;
+use super::chance::{median, quantile};
 use super::view::View;
 
 /// Longest piece that is taken coherently, s and samples: what hums keeps its phase for some seconds, not for minutes.
@@ -36,6 +36,9 @@ pub struct Spectra {
     pub gain: f64,
     /// By bin and triad, Re Σ X·X†/Σw², mean over pieces: of white noise its variance (unit²) on the diagonal.
     pub cross: Vec<[Matrix3<f64>; 2]>,
+    /// By triad and axis: variance (unit²) that a tenth of the bins exceeds, the noise within the sensor's bandwidth if that is a tenth of the
+    /// band at least.
+    pub level: [[f64; 3]; 2],
 }
 
 impl Spectra {
@@ -61,15 +64,28 @@ impl Spectra {
                 transforms(view, piece.clone(), &taper, &*transform)
             })
             .collect();
-        let cross = (0..size / 2).map(|bin| [0, 1].map(|triad| together(&transformed, bin, triad))).collect();
+        let cross: Vec<_> = (0..size / 2).map(|bin| [0, 1].map(|triad| together(&transformed, bin, triad))).collect();
         let bin_hz = 1.0 / (size as f64 * view.dt_s);
-        Some(Self { bin_hz, resolution_hz: 1.0 / (typical * view.dt_s), pieces: pieces.len() as f64, gain, cross })
+        let level = [0, 1].map(|triad| [0, 1, 2].map(|axis| level(&cross, triad, axis)));
+        Some(Self {
+            bin_hz,
+            resolution_hz: 1.0 / (typical * view.dt_s),
+            pieces: pieces.len() as f64,
+            gain,
+            cross,
+            level,
+        })
     }
 
     /// The nearest bin.
     pub fn bin(&self, hz: f64) -> usize {
         ((hz / self.bin_hz).round().max(0.0) as usize).min(self.cross.len() - 1)
     }
+}
+
+fn level(cross: &[[Matrix3<f64>; 2]], triad: usize, axis: usize) -> f64 {
+    let mut powers: Vec<f64> = cross.iter().map(|bin| bin[triad][(axis, axis)]).collect();
+    quantile(&mut powers, 0.9)
 }
 
 /// The mean over pieces of Re X·X†, in which no piece counts for more than [`ALONE`] times the usual one.
