@@ -77,6 +77,14 @@ impl Session<'_> {
         let covariance = estimate.as_ref().ok().filter(|_| !matches!(method, Method::TwoStep(_))).map(|e| e.covariance);
         let mut outcome = self.judged(tape, estimate);
         outcome.covariance = covariance;
+        if matches!(method, Method::Gravity) && outcome.verdict == Verdict::Rejected {
+            outcome.reasons.insert(
+                0,
+                "This estimator goes by the size of gravity at rest alone, which on six faces shows no angle between the accelerometer's axes: rest in \
+                 nine oblique poses or more, or leave `--estimator gravity` away."
+                    .into(),
+            );
+        }
         if let Some(full_us) = settled.full_us {
             let full_s = seconds(full_us, self.origin_s);
             outcome.warn(format!("The session's memory was full at {full_s:.1} s: what came later was left out."));

@@ -61,11 +61,20 @@ pub fn conditions(metadata: &Metadata) -> Conditions {
     Conditions {
         stops: metadata.turns.unwrap_or_default(),
         faces: metadata.box_faces.unwrap_or_default(),
-        gravity_mps2: metadata
-            .gravity_mps2
-            .or(metadata.latitude_deg.map(normal_gravity_mps2))
-            .map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
+        gravity_mps2: metadata.gravity_mps2.map_or(Conditions::CAUTIOUS.gravity_mps2, |g| g as f32),
     }
+}
+
+/// What a person should know who says where on Earth the recording was made and not how strong gravity is there. The contract's g is the
+/// standard one; who simulates at a latitude may well have kept it, so that it is not replaced behind anyone's back.
+pub fn unstated_gravity(metadata: &Metadata) -> Option<String> {
+    let latitude_deg = metadata.latitude_deg.filter(|_| metadata.gravity_mps2.is_none())?;
+    let normal = normal_gravity_mps2(latitude_deg);
+    let share = 100.0 * (normal / f64::from(Conditions::CAUTIOUS.gravity_mps2) - 1.0);
+    Some(format!(
+        "Gravity is taken as 9.80665 m/s²: 'gravity_mps2' is not stated. At latitude {latitude_deg}° and sea level it is {normal:.4}, which would change the \
+         accelerometer's scale by {share:+.3} %. State it if that matters."
+    ))
 }
 
 /// At sea level, by the geodetic latitude: the series of the GRS 1980 ellipsoid. From the standard value it differs by up to 0.27 %, which is
@@ -184,19 +193,17 @@ const fn wants_rest(reason: &Reason) -> bool {
 mod tests {
     use super::*;
 
-    /// Equator, 45° and pole of the ellipsoid; what is stated goes first.
     #[test]
-    fn gravity_follows_the_latitude_where_it_is_not_stated() {
-        let at = |latitude_deg, gravity_mps2| {
-            conditions(&Metadata { latitude_deg, gravity_mps2, ..Metadata::default() }).gravity_mps2
-        };
-        for (latitude_deg, gravity) in [(0.0, 9.780_33), (45.0, 9.806_2), (-90.0, 9.832_19)] {
-            assert!(
-                (at(Some(latitude_deg), None) - gravity).abs() < 2e-5,
-                "{latitude_deg}: {}",
-                at(Some(latitude_deg), None)
-            );
+    fn gravity_is_what_is_stated_and_a_latitude_says_what_it_might_be() {
+        let stated = |latitude_deg, gravity_mps2| Metadata { latitude_deg, gravity_mps2, ..Metadata::default() };
+        let at = |latitude_deg, gravity_mps2| conditions(&stated(latitude_deg, gravity_mps2)).gravity_mps2;
+        assert_eq!(at(Some(0.0), None), tumble_core::STANDARD_GRAVITY_MPS2);
+        // Equator, 45° and pole of the ellipsoid.
+        for (latitude_deg, gravity) in [(0.0, "9.7803"), (45.0, "9.8062"), (-90.0, "9.8322")] {
+            let said = unstated_gravity(&stated(Some(latitude_deg), None)).expect("a remark");
+            assert!(said.contains(gravity), "{said}");
         }
+        assert_eq!(unstated_gravity(&stated(Some(0.0), Some(9.78))), None);
         assert_eq!((at(Some(0.0), Some(9.81)), at(None, None)), (9.81, tumble_core::STANDARD_GRAVITY_MPS2));
     }
 }

@@ -16,6 +16,7 @@ use crate::faults::{self, Mended};
 use crate::omissions;
 use crate::output::{Report, table};
 use crate::recording::{BoxFaces, Inference, Reading, Recording, as_board_reads};
+use crate::settle;
 use crate::widen::widen;
 
 /// Where the axes of compensated data come from.
@@ -123,6 +124,7 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         widen(carry, &session, method, &mut outcome, |share| progress.share("how sure of it", share));
     }
     remarks.into_iter().for_each(|remark| outcome.warn(remark));
+    outcome.reasons.extend(settle::unstated_gravity(&recording.metadata));
     let own_model = matches!(arguments.estimator, EstimatorWord::Device | EstimatorWord::Batch);
     if own_model && !arguments.board_counts && !arguments.quick && outcome.verdict != Verdict::Rejected {
         let what = |what: &str, share: f32| progress.share(what, share);
