@@ -10,7 +10,7 @@ use tumble_core::tape::Exclusion;
 use crate::calibrate::{Outcome, why};
 use crate::diagnose::carry::CARRIED;
 use crate::diagnose::catalogue::STRUCTURAL;
-use crate::diagnose::diagnosis::{Found, Verdict};
+use crate::diagnose::diagnosis::{Diagnosis, Found, Verdict};
 use crate::diagnose::report::words::odds;
 use crate::diagnose::{Options, diagnose};
 use crate::recording::Recording;
@@ -18,16 +18,14 @@ use crate::recording::Recording;
 /// Effects that the estimator has states or noise for: its numbers and their sigmas allow for them.
 const HELD: [&str; 3] = ["accel_lever_arm", "earth_rotation", "incomplete_turn"];
 
-/// Diagnoses the recording and adds to the outcome's warnings what its numbers do not allow for; `carried` was taken out before.
-pub fn look(
-    recording: &Recording,
-    conditions: Conditions,
-    carried: &[String],
-    outcome: &mut Outcome,
-    mut progress: impl FnMut(&str, f32),
-) {
+/// Asks the diagnosis; `progress` hears what is done and which share of it.
+pub fn ask(recording: &Recording, conditions: Conditions, mut progress: impl FnMut(&str, f32)) -> Diagnosis {
     let options = Options { without: Vec::new(), seed: 1, conditions: Some(conditions) };
-    let diagnosis = diagnose(recording, &options, &mut progress).diagnosis;
+    diagnose(recording, &options, &mut progress).diagnosis
+}
+
+/// Adds to the outcome's warnings what its numbers do not allow for; `carried` was taken out before.
+pub fn tell(diagnosis: &Diagnosis, carried: &[String], outcome: &mut Outcome) {
     let carries_g = outcome.calibration.as_ref().is_some_and(|calibration| calibration.g_sensitivity.is_some());
     let jumped = outcome.segments.iter().any(|segment| segment.why == why(Exclusion::BiasJump));
     let held = |id: &str| {

@@ -45,8 +45,8 @@ pub fn widen(carry: &Carry, session: &Session, method: Method, outcome: &mut Out
     if !told.is_empty() {
         let ids: Vec<&str> = carry.effects.iter().map(|carried| carried.id.as_str()).collect();
         outcome.warn(format!(
-            "How large {} is, is hardly known from this recording: that makes {} more than twice as uncertain. Turn about every axis both early and \
-             late, or at more than one temperature.",
+            "How large {} is, is hardly known from this recording: that makes {} more than twice as uncertain. Turn on every face both early \
+             and late in the session: then what it follows differs within each.",
             ids.join(" with "),
             told.join(", ")
         ));

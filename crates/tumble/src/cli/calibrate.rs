@@ -11,7 +11,8 @@ use tumble_core::sample::Ranges;
 use super::output::Progress;
 use super::{Refusal, TurnsWord, output};
 use crate::calibrate::{self, Method, Session};
-use crate::diagnose::carry::carry;
+use crate::diagnose::carry::{Carry, carry};
+use crate::diagnose::diagnosis::Diagnosis;
 use crate::faults::{self, Mended};
 use crate::omissions;
 use crate::output::{Report, table};
@@ -107,28 +108,21 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         true => Mended { readings, lost: inference.missing(), remarks: Vec::new() },
         false => faults::mend(recording, &inference, readings),
     };
-    let carry = match arguments.with.as_slice() {
-        [] => None,
-        ids => Some(carry(recording, conditions(arguments, recording), ids, &mut readings).map_err(Refusal::one)?),
-    };
-    let session = Session {
-        readings: &readings,
-        origin_s: recording.origin_s(),
-        lost,
-        conditions: conditions(arguments, recording),
-    };
+    let conditions = conditions(arguments, recording);
     let mut progress = Progress::new();
-    let mut outcome = session.run(arguments.estimator.into(), &mut |share| progress.share("estimating", share));
+    let before = (arguments.asks() && !arguments.with.is_empty()).then(|| ask(recording, conditions, &mut progress));
+    let carry = taken_out(arguments, recording, conditions, before.as_ref(), &mut readings)?;
+    let session = Session { readings: &readings, origin_s: recording.origin_s(), lost, conditions };
+    let method = arguments.estimator.into();
+    let mut outcome = session.run(method, &mut |share| progress.share("estimating", share));
     if let Some(carry) = &carry {
-        let method = arguments.estimator.into();
         widen(carry, &session, method, &mut outcome, |share| progress.share("how sure of it", share));
     }
     remarks.into_iter().for_each(|remark| outcome.warn(remark));
     outcome.reasons.extend(settle::unstated_gravity(&recording.metadata));
-    let own_model = matches!(arguments.estimator, EstimatorWord::Device | EstimatorWord::Batch);
-    if own_model && !arguments.board_counts && !arguments.quick && outcome.verdict != Verdict::Rejected {
-        let what = |what: &str, share: f32| progress.share(what, share);
-        omissions::look(recording, session.conditions, &arguments.with, &mut outcome, what);
+    if arguments.asks() && outcome.verdict != Verdict::Rejected {
+        let diagnosis = before.unwrap_or_else(|| ask(recording, conditions, &mut progress));
+        omissions::tell(&diagnosis, &arguments.with, &mut outcome);
     }
     drop(progress);
     let report = Report::of(&outcome).carrying(carry.map_or_else(Vec::new, |carry| carry.effects));
@@ -138,6 +132,36 @@ fn estimate(arguments: &Arguments, recording: &Recording) -> Result<(), Refusal>
         output::print(&(table::recording(recording, &inference) + &table::report(&report)))?;
     }
     if report.is_accepted() { Ok(()) } else { Err(rejected(&arguments.recording, &report)) }
+}
+
+impl Arguments {
+    /// Is the diagnosis asked what the numbers leave out? The references have a model of their own, and an emulated board asks nobody.
+    fn asks(&self) -> bool {
+        let own_model = matches!(self.estimator, EstimatorWord::Device | EstimatorWord::Batch);
+        own_model && !self.board_counts && !self.quick
+    }
+}
+
+fn ask(recording: &Recording, conditions: Conditions, progress: &mut Progress) -> Diagnosis {
+    omissions::ask(recording, conditions, |what, share| progress.share(what, share))
+}
+
+/// What is to be carried, taken out of the readings; it is fitted beside what else was found.
+fn taken_out(
+    arguments: &Arguments,
+    recording: &Recording,
+    conditions: Conditions,
+    diagnosis: Option<&Diagnosis>,
+    readings: &mut [Reading],
+) -> Result<Option<Carry>, Refusal> {
+    let mut ids: Vec<String> = Vec::new();
+    arguments.with.iter().for_each(|id| ids.extend((!ids.contains(id)).then(|| id.clone())));
+    if ids.is_empty() {
+        return Ok(None);
+    }
+    let found = diagnosis.into_iter().flat_map(|diagnosis| &diagnosis.effects);
+    let beside: Vec<String> = found.map(|found| found.id.clone()).collect();
+    carry(recording, conditions, &ids, &beside, readings).map(Some).map_err(Refusal::one)
 }
 
 fn readings(arguments: &Arguments, recording: &Recording, inference: &Inference) -> Vec<Reading> {

@@ -15,6 +15,7 @@ use super::options::Options;
 use super::posterior;
 use super::search::bench::{Accepted, Bench};
 use super::search::ledger::Ledger;
+use super::search::shares::parameters;
 use super::twin::influence::Push;
 use super::twin::trajectory::mean_temperature;
 use crate::recording::{Reading, Recording};
@@ -64,7 +65,7 @@ impl Carry {
 }
 
 /// Fits the effects to the recording, what ails its samples put right or masked, and takes them out of `readings`, which are the
-/// recording's, mended or rounded.
+/// recording's, mended or rounded. Those of `beside` are fitted with them, so that they are not blamed on them, and stay where they are.
 ///
 /// Sizes are those of the posterior: where a recording hardly tells them, the prior (what is typical) keeps them near nothing.
 ///
@@ -74,6 +75,7 @@ pub fn carry(
     recording: &Recording,
     conditions: Conditions,
     ids: &[String],
+    beside: &[String],
     readings: &mut [Reading],
 ) -> Result<Carry, String> {
     if let Some(id) = ids.iter().find(|id| !CARRIED.contains(&id.as_str())) {
@@ -93,9 +95,17 @@ pub fn carry(
         let accepted = accept(&bench, &ledger, id)?;
         bench.accepted.push(accepted);
     }
+    // A walk is noise and has no size to be fitted.
+    let sized = |accepted: &Accepted| bench.placed(accepted).is_some();
+    let beside = beside.iter().filter(|id| !ids.contains(id)).filter_map(|id| accept(&bench, &ledger, id).ok());
+    let beside: Vec<Accepted> = beside.filter(sized).collect();
+    bench.accepted.extend(beside);
     bench.refit();
     let settled = posterior::noise(&mut bench);
     let (sizes, covariance) = numbers::joint(&mut bench, settled);
+    // Theirs come first.
+    let count = (0..ids.len()).map(|k| parameters(&bench, k)).sum();
+    let (sizes, covariance) = (sizes.rows(0, count).into_owned(), covariance.view((0, 0), (count, count)).into_owned());
     take_off(readings, bench.pushes(sizes.as_slice()));
     Ok(Carry { effects: effects(&bench, ids, &sizes, &covariance), doubts: doubts(&bench, covariance) })
 }
