@@ -5,7 +5,7 @@
 //! sigma. A scale that follows temperature, seen on an axis that was turned within one minute, is known to 0.3 %/K, and where that minute was
 //! 1 K off the mean the scale at the mean is known to 0.3 %: without this its sigma was a tenth of that.
 
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 use tumble_core::calibration::{Calibration, TriadEstimate, Verdict};
 use tumble_core::estimate::PARAMETERS;
 
@@ -28,25 +28,30 @@ pub fn widen(carry: &Carry, session: &Session, method: Method, outcome: &mut Out
     };
     let doubts = carry.doubtful(session.readings);
     let count = doubts.len();
-    let mut widened = Numbers::zeros();
+    let mut widened = SMatrix::<f32, PARAMETERS, PARAMETERS>::zeros();
     for (k, readings) in doubts.enumerate() {
         let doubtful = Session { readings: &readings, ..*session };
-        let Some(other) = doubtful.run(method, &mut |_| {}).calibration else {
-            return outcome.warn("What is uncertain of the effects carried is not in the sigmas: one sigma more of it, and the recording cannot be calibrated from.".into());
+        let other = doubtful.run(method, &mut |_| {}).calibration;
+        let Some(other) = other.filter(|other| other.frame == base.frame) else {
+            return outcome.warn(
+                "What is uncertain of the effects carried is not in the sigmas: with one sigma more of it the recording is calibrated \
+                 otherwise, or not at all."
+                    .into(),
+            );
         };
         let shift = numbers(&other) - numbers(&base);
-        widened += shift.component_mul(&shift);
-        if let Some(covariance) = &mut outcome.covariance {
-            *covariance += shift * shift.transpose();
-        }
+        widened += shift * shift.transpose();
         progress((k + 1) as f32 / count as f32);
     }
-    let told = add(outcome, calibration, &widened);
+    if let Some(covariance) = &mut outcome.covariance {
+        *covariance += widened;
+    }
+    let told = add(outcome, calibration, &widened.diagonal());
     if !told.is_empty() {
         let ids: Vec<&str> = carry.effects.iter().map(|carried| carried.id.as_str()).collect();
         outcome.warn(format!(
-            "How large {} is, is hardly known from this recording: that makes {} more than twice as uncertain. Turn on every face both early \
-             and late in the session: then what it follows differs within each.",
+            "What is uncertain of {} more than doubles the sigmas of {}, which have it. Turn on every face both early and late in the session: then \
+             what it follows differs within each.",
             ids.join(" with "),
             told.join(", ")
         ));
