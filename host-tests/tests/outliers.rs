@@ -4,6 +4,7 @@ use host_tests::sim::{Deviation, is_gyro_cross, session, spread};
 use tumble_core::calibration::{Reason, Verdict};
 use tumble_core::estimate::judge::judge;
 use tumble_core::procedure::{BoxFaces, TurnStops};
+use tumble_sim::effect::Effect;
 use tumble_sim::motion::Stops;
 use tumble_sim::scheme::Imperfection;
 use tumble_sim::{Scheme, SchemeConfig};
@@ -87,4 +88,25 @@ fn an_estimate_that_did_not_settle_is_rejected() {
         accepted.is_none() && judgement.reasons.first() == Some(&Reason::Unsettled { sigmas: 27.0 }),
         "{judgement:?}"
     );
+}
+
+/// An accelerometer whose bias walks leans each pose another way: that is no noise of the moves between them. What it walks from one rest to the
+/// next was all that was expected, and the noise of moves was taken for 350 times that of rest (the middle of these).
+#[test]
+fn a_walk_of_the_accelerometer_is_no_noise_of_moves() {
+    let mut median: Vec<f32> = (1..8)
+        .map(|seed| {
+            let mut config = SchemeConfig::new(Scheme::Double, seed);
+            config.effects = vec![Effect::parse("accel_bias_random_walk=0.3").expect("a known effect")];
+            let session = session(&config, TurnStops::ByHand, BoxFaces::Unknown);
+            let noise = &session.estimate.noise;
+            println!(
+                "{seed}: walk {:e} (m/s²)²/s, moves {:.1}, turns {:.1}",
+                noise.force_walk, noise.hand_scale, noise.turn_scale
+            );
+            noise.hand_scale
+        })
+        .collect();
+    median.sort_by(f32::total_cmp);
+    assert!(median[3] < 100.0, "{median:?}");
 }

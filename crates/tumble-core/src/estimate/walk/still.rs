@@ -110,7 +110,8 @@ impl<const S: usize> Walk<S> {
     /// linearisation but the still's own noise (0.1 mrad, whose square is nothing).
     ///
     /// What is expected of the move before has what biases that walk make of it: the nominal attitude is carried with the nominal bias, about
-    /// which a walk has a mean square of q T/6, and the accelerometer's is another at each rest.
+    /// which a walk has a mean square of q T/6. The accelerometer's is another at each rest: on the same face by what it has walked since; in
+    /// another pose it leans another way, and both rests are off the nominal one, which is the last pass's at its end, by q T/2 in the mean.
     fn level(&mut self, force: &Vector3<f32>, variance: f32, duration_s: f32, noise: &Noise) {
         let turn = model::levelling(&(self.pass.attitude * force));
         self.pass.attitude = UnitQuaternion::new_normalize((turn * self.pass.attitude).into_inner());
@@ -123,8 +124,10 @@ impl<const S: usize> Walk<S> {
         self.filter.shift(Block::Attitude, &-turn);
         if let Some(hinge) = self.pass.hinge.take() {
             let move_s = self.pass.move_s;
-            let walked = noise.total_bias_walk() * self.pass.session_s / 6.0 * move_s * move_s
-                + noise.force_walk * (move_s + duration_s) / (self.gravity * self.gravity);
+            let session_s = self.pass.session_s;
+            let apart_s = if self.pass.in_hand { session_s } else { move_s + duration_s };
+            let walked = noise.total_bias_walk() * session_s / 6.0 * move_s * move_s
+                + noise.force_walk * apart_s / (self.gravity * self.gravity);
             let moved = noise.rate_density * move_s;
             let [square, level, walked] = [turn.norm_squared(), before + variance, walked].map(|part| part / moved);
             self.noise[hinge].hinge = Some(Hinge { square, level, walked, in_hand: self.pass.in_hand });

@@ -8,6 +8,7 @@ use tumble_core::estimate::hinge::Hinge;
 
 use super::null::FALSE_ALARMS;
 use crate::diagnose::twin::Twin;
+use crate::diagnose::twin::data::Arrival;
 use crate::diagnose::twin::noise::{BIAS_WALK_FLOOR, FORCE_WALK_FLOOR, Noise};
 
 /// Noise in motion over that at rest, squared, that a diagnosis has to bear: 1.5 times as much.
@@ -32,11 +33,15 @@ pub fn restless(twin: &Twin, noise: &Noise) -> Option<Restless> {
     if noise.turn_scale <= 1.0 && noise.hand_scale <= 1.0 {
         return None;
     }
-    // A walk that nobody names is no excuse.
+    // A walk that nobody names is no excuse; one that is named is as large as the search says, whatever the estimator took it for.
     let walks = noise.bias_walk > BIAS_WALK_FLOOR || noise.force_walk > FORCE_WALK_FLOOR;
+    let walked = |arrival: &Arrival| {
+        let named = noise.bias_walk * arrival.by_bias_walk + noise.force_walk * arrival.by_force_walk;
+        if walks { arrival.hinge.walked.max(named as f32) } else { 0.0 }
+    };
     let kinds = [true, false].map(|in_hand| {
-        let hinges = twin.hinges.iter().filter(|hinge| hinge.in_hand == in_hand);
-        let hinges = hinges.map(|hinge| Hinge { walked: if walks { hinge.walked } else { 0.0 }, ..*hinge });
+        let arrivals = twin.arrivals.iter().filter(|arrival| arrival.hinge.in_hand == in_hand);
+        let hinges = arrivals.map(|arrival| Hinge { walked: walked(arrival), ..arrival.hinge });
         let (times, p_value) = chance(&hinges.collect::<Vec<_>>());
         // Either of two kinds.
         Restless { times, p_value: 2.0 * p_value, in_hand }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::Vector3;
+use tumble_core::estimate::hinge::Hinge;
 use tumble_core::estimate::noise::{self, Noise};
 use tumble_core::estimate::stand::standing;
 use tumble_core::face::Face;
@@ -33,6 +34,17 @@ impl Raw {
             temperature_degc: row.temp_c.unwrap_or(f64::NAN),
         }
     }
+}
+
+/// How a move ended, as the device's estimator saw it.
+#[derive(Clone, Copy, Debug)]
+pub struct Arrival {
+    /// The level after it.
+    pub hinge: Hinge,
+    /// What a walk of unit density of the gyroscope's bias makes of [`Hinge::walked`] …
+    pub by_bias_walk: f64,
+    /// … and one of the accelerometer's.
+    pub by_force_walk: f64,
 }
 
 /// What happened in a stretch.

@@ -21,11 +21,10 @@ pub mod visit;
 mod walk;
 
 use tumble_core::estimate::Conditions;
-use tumble_core::estimate::hinge::Hinge;
 use tumble_core::setup::{BoxFaces, TurnStops};
 
 use column::Column;
-use data::{Deed, Raw, Stretch};
+use data::{Arrival, Deed, Raw, Stretch};
 use noise::Noise;
 use rows::Rows;
 use state::State;
@@ -116,7 +115,7 @@ pub struct Twin {
     /// m/s².
     pub gravity_mps2: f64,
     /// How moves ended, as the device's estimator saw it.
-    pub hinges: Vec<Hinge>,
+    pub arrivals: Vec<Arrival>,
     /// Per segment: how much noisier than in the quiet rests its specific force is.
     pub force_scale: Vec<f64>,
     prior: Prior,
@@ -128,7 +127,7 @@ impl Twin {
         samples: Vec<Raw>,
         stretches: Vec<Stretch>,
         start: Nominal,
-        (noise, hinges): (Noise, Vec<Hinge>),
+        (noise, arrivals): (Noise, Vec<Arrival>),
         conditions: &Conditions,
     ) -> Self {
         let gravity_mps2 = f64::from(conditions.gravity_mps2);
@@ -145,7 +144,7 @@ impl Twin {
             noise,
             stops: conditions.stops,
             gravity_mps2,
-            hinges,
+            arrivals,
             force_scale: Vec::new(),
             prior,
         };
